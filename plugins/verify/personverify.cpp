@@ -186,11 +186,10 @@ gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
                       : model                ? kModelThreshold
                                              : kDaimlerThreshold;
     state.certain = std::max(model ? kModelCertain : kDaimlerCertain, state.threshold);
-    const double floor = vision::VerificationParameters{}.line_floor * state.threshold;
     std::string wrong;
-    auto detector = model
-                        ? cerberus::plugin::make_model_detector(settings.model, settings.labels, floor, wrong)
-                        : cerberus::plugin::make_daimler_detector(floor);
+    auto detector =
+        model ? cerberus::plugin::make_model_detector(settings.model, settings.labels, state.threshold, wrong)
+              : cerberus::plugin::make_daimler_detector(state.threshold);
     if (!detector) {
       CERBERUS_ELEMENT_ERROR(transform, RESOURCE, SETTINGS, (wrong), ("the property model cannot be used"));
       return FALSE;

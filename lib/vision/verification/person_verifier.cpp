@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace cerberus::vision {
 
@@ -250,15 +251,13 @@ std::optional<PersonVerifier::Look> PersonVerifier::choose() {
   return Look{*region, pictures_.number()};
 }
 
-// Fills found_ with one detection a person.
+// Fills found_ with one detection a person, but for those who are higher or lower than people are where they stand.
 void PersonVerifier::take_persons(std::span<const PersonDetection> hits, double threshold) {
   found_.clear();
-  for (const PersonDetection& hit : hits) {
-    const HeightLine::Fit fit = line_.judge(hit.box, p_);
-    const double least = fit == HeightLine::Fit::fits ? p_.line_floor * threshold : threshold;
-    if (fit != HeightLine::Fit::contradicts && hit.score >= least) found_.push_back(hit);
-  }
-  merge_hits(found_, p_.line_floor * threshold);
+  std::ranges::copy_if(hits, std::back_inserter(found_), [&](const PersonDetection& hit) {
+    return line_.judge(hit.box, p_) != HeightLine::Fit::contradicts;
+  });
+  merge_hits(found_, threshold);
   for (const PersonDetection& person : found_)
     if (person.score >= p_.line_certain * threshold) line_.learn(person.box, p_);
 }

@@ -63,8 +63,7 @@ class PersonVerifier {
   // Where the detector is to look in the present frame, the most doubtful first; nullopt: nowhere.
   std::optional<Look> choose();
   // Takes in what a look showed, up to PictureHistory::kKept frames later: every hit, boxes in pixels of the frame.
-  // threshold: the score of a person; line_floor times as much is enough where people are known to be as high; certain:
-  // the score that counts as certain.
+  // threshold: the least score of a hit; certain: the score that counts as certain.
   void apply(const Look& look, std::span<const PersonDetection> hits, double threshold, double certain);
   // What is published for the present frame: persons, and the candidates that they do not replace. Valid until the next
   // call.

@@ -22,7 +22,7 @@ struct VerificationParameters {
   double unbound = 0.35;  // and stays so down to this,
   double unbound_whole =
       0.1;  // or this where the track is as high and wide as the person: that one was lost in the picture
-  double agrees = 0.7;  // a look shows the person where the track is,
+  double agrees = 0.6;  // a look shows the person where the track is,
   int agreed = 2;       // and so often in a row before the person is drawn towards the track
   // Natural logarithms of a track's height and width over a person's: more, and it is not this person alone.
   double alike_height = 0.2, alike_width = 0.4;
@@ -44,7 +44,6 @@ struct VerificationParameters {
   double line_doubt = 0.1;      // standard deviation of the line: where it is larger nothing is known
   double line_tolerance = 0.2;  // logarithm of a height over the line's that a person may have
   double line_certain = 1.3;    // in thresholds: the score of a detection that teaches
-  double line_floor = 0.7;      // in thresholds: the score of a detection whose height fits
 
   // Evidence for a person, in detections.
   double most_evidence = 2;
