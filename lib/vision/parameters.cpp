@@ -32,10 +32,13 @@ class Numbers {
 // A member of a struct's table: a name cannot stand for another member. tests/unit/parameters finds missing ones.
 #define N(member)      \
   Numbers::Number {    \
-    #member, &p.member \
+#member, &p.member \
   }
 // The same of a divisor.
-#define D(member) Numbers::Number{#member, &p.member, 1}
+#define D(member)         \
+  Numbers::Number {       \
+#member, &p.member, 1 \
+  }
 
 void name(Numbers n, RegionParameters& p) {
   n.add({N(least_share),

@@ -14,8 +14,11 @@
  * - other tracks stay as they were, or are left out (`require=person`): `pirfusion` and `pantiltsink` behind then
  *   follow persons only.
  *
- * Between two looks of the detector a person is followed in the picture. One without a track whom the last look at the
- * place missed is left out until a look shows the person again.
+ * Between two looks of the detector a person goes on as fast as the looks have shown, or with a track that three looks in a
+ * row have found right. One without a track whom the last look at the place missed is left out until a look shows the
+ * person again; who is found again within 3 s keeps the identity. While a person has a track's identity elsewhere, that
+ * track is left out. The detector's hits teach how high people are where they stand, and what is much higher or lower
+ * is no person.
  *
  * The detector is OpenCV's one for pedestrians (histograms of oriented gradients, trained on the Daimler data set):
  * upright people who are at least 24 pixels high. It costs up to 60 ms a look on one core. It does not see people who

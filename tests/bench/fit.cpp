@@ -32,7 +32,7 @@ namespace {
 constexpr double kHiddenFor = 3;  // s, issue: who was hidden for so long is the same
 constexpr double kAround = 1;     // s before and after it in which the person must be matched to be judged
 
-constexpr double kBias = 0.05;    // the most that is asked
+constexpr double kBias = 0.05;  // the most that is asked
 // Whether the bias is reached; the share of hidden people that must be kept: all are wanted.
 struct PromisedFit {
   const char* name;
@@ -178,8 +178,9 @@ bool measure(const PeopleSequence& s, const std::string& detector, Asked& asked)
       *std::ranges::find(kPromised, s.name, [](const PromisedFit& p) { return std::string(p.name); });
   std::printf("%s", asked.at_most("bias on " + s.name, worst, kBias, promised.fits).c_str());
   if (hidden.asked > 0)
-    std::printf("%s", asked.at_least("people hidden on " + s.name + " who are kept",
-                                     static_cast<double>(hidden.kept) / hidden.asked, promised.kept)
+    std::printf("%s", asked
+                          .at_least("people hidden on " + s.name + " who are kept",
+                                    static_cast<double>(hidden.kept) / hidden.asked, promised.kept)
                           .c_str());
   std::puts("");
   return true;

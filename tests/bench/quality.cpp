@@ -253,9 +253,9 @@ bool skier(const fs::path& data, const Finder& finder, Asked& asked) {
     return true;
   }
   double frames = 0, found_in = 0;
-  const std::string source =
-      "multifilesrc location=" + (folder / "img" / "%04d.jpg").string() + " start-index=1 stop-index=" +
-      std::to_string(truth.size()) + " caps=image/jpeg,framerate=30/1 ! jpegdec";
+  const std::string source = "multifilesrc location=" + (folder / "img" / "%04d.jpg").string() +
+                             " start-index=1 stop-index=" + std::to_string(truth.size()) +
+                             " caps=image/jpeg,framerate=30/1 ! jpegdec";
   const bool measured = for_each_frame(source, finder, [&](const std::vector<Found>& found, int n) {
     if (n >= static_cast<int>(truth.size())) return;
     ++frames;

@@ -179,7 +179,7 @@ START_TEST(who_was_hidden_for_less_than_three_seconds_keeps_the_identity) {
 END_TEST
 
 START_TEST(a_person_follows_a_track_that_looks_have_found_right) {
-  for (const int looks : {2, 3}) {
+  for (const int looks : {3, 4}) {
     Rig rig;
     rig.tracks = {{.id = 4, .box = person_at(200)}};
     for (int n = 0; n < looks; ++n) rig.look({{person_at(200), 3}});
@@ -188,7 +188,7 @@ START_TEST(a_person_follows_a_track_that_looks_have_found_right) {
       rig.frames(1);
     }
     const bool followed = rig.person()->box.x > 208;
-    ck_assert(followed == (looks == 3));
+    ck_assert(followed == (looks == 4));
   }
 }
 END_TEST

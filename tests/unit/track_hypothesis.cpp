@@ -221,7 +221,8 @@ static int frames_until_shrunk(double seconds, bool camera_moves) {
   TrackHypothesis track = walker(200, 240);
   for (int frame = 1;; ++frame) {
     ck_assert(track.predict(seconds, camera_moves));
-    track.correct({{track.x.position - 20, track.y.position - 25, 40, 50}, 1000, 0.9, 1}, true, seconds, kFrame);
+    track.correct({{track.x.position - 20, track.y.position - 25, 40, 50}, 1000, 0.9, 1}, true, seconds,
+                  kFrame);
     if (track.height() < 75 || frame == 100) return frame;
   }
 }

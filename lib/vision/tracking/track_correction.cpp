@@ -109,8 +109,8 @@ bool TrackHypothesis::outgrown(const Region& region, bool cut, double seconds) {
   const Point to = centre(seen);
   const double gone = std::hypot(to.x - fit.misfit_from.x, to.y - fit.misfit_from.y);
   // While the camera moves a smaller region is believed in its second frame.
-  const bool lasts = camera_moved ? fit.misfit >= q.panned_misfit && fit.misfit > seconds
-                                  : fit.misfit >= q.shrinking_misfit;
+  const bool lasts =
+      camera_moved ? fit.misfit >= q.panned_misfit && fit.misfit > seconds : fit.misfit >= q.shrinking_misfit;
   return lasts && (!fit.was_still || !known || gone > q.fragment_walk * size());
 }
 

@@ -85,7 +85,8 @@ bool TrackHypothesis::predict(double seconds, bool camera_moves) {
       a->pp = std::min(a->pp + square(q.stopped_wander * s) * seconds,
                        std::max(square(q.stopped_uncertainty * s), a->pp));
   } else {
-    for (MovingValue* a : {&x, &y}) a->predict(seconds, (camera_moves ? q.panned_acceleration : q.acceleration) * s * s);
+    for (MovingValue* a : {&x, &y})
+      a->predict(seconds, (camera_moves ? q.panned_acceleration : q.acceleration) * s * s);
   }
   for (SlowValue* e : {&w, &h}) e->predict(seconds, q.size_wander);
   age += seconds;

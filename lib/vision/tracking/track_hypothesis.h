@@ -130,7 +130,7 @@ struct TrackHypothesis {
   Fit fit;
   Shared shared;
   Appearance appearance;
-  Match match;              // of this frame
+  Match match;                // of this frame
   bool camera_moved = false;  // since the frame before
 
   static TrackHypothesis first_seen(const Region& region,

@@ -16,11 +16,11 @@ struct TrackParameters {
   // swept on otb_Skiing (.54 of the frames with 1, .62 with 2, .65 from 3 on) and davis_tennis (MOTA .80 instead of .83
   // from 5 on). Guard: bench-moving_window.
   double panned_acceleration = 3.0;
-  double birth_speed = 3.0;         // S/s, standard deviation of the unknown first velocity
-  double position_noise = 0.05;     // S, standard deviation of a region's centre
-  double grain = 1.0 / 320;  // of the frame's width. derived: a pixel of the analysed picture, 320 wide
-  double blob_noise = 6;     // times: variance of a position from a blob of another extent
-  double size_noise = 0.15;  // of the logarithm, standard deviation of a region's extent
+  double birth_speed = 3.0;      // S/s, standard deviation of the unknown first velocity
+  double position_noise = 0.05;  // S, standard deviation of a region's centre
+  double grain = 1.0 / 320;      // of the frame's width. derived: a pixel of the analysed picture, 320 wide
+  double blob_noise = 6;         // times: variance of a position from a blob of another extent
+  double size_noise = 0.15;      // of the logarithm, standard deviation of a region's extent
   double size_wander = 0.15 * 0.15;  // 1/s. derived: a person's extent changes by 15 % in a second
   double border_wander = 1.5 * 1.5;  // 1/s, of an extent that the picture's edge cuts
   double fade = 20.0;                // times less that a shrinking extent counts for a standing object

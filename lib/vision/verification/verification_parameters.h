@@ -23,7 +23,7 @@ struct VerificationParameters {
   double unbound_whole =
       0.1;  // or this where the track is as high and wide as the person: that one was lost in the picture
   double agrees = 0.6;  // a look shows the person where the track is,
-  int agreed = 2;       // and so often in a row before the person is drawn towards the track
+  int agreed = 3;       // and so often in a row before the person is drawn towards the track
   // Natural logarithms of a track's height and width over a person's: more, and it is not this person alone.
   double alike_height = 0.2, alike_width = 0.4;
   double part =
