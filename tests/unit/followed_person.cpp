@@ -217,6 +217,19 @@ START_TEST(a_hit_that_is_not_as_high_as_people_are_is_none) {
 }
 END_TEST
 
+START_TEST(other_ground_is_learnt_anew) {
+  Rig rig;
+  for (const double foot : {260, 270, 275, 280, 285, 288, 265}) rig.look({{standing(foot), 3}});
+  int looks = 0;
+  for (; looks < 40; ++looks) {
+    for (int n = 0; n < 3; ++n) rig.look({});
+    rig.look({{standing(260 + looks % 5 * 5, 0.6), 3}});
+    if (rig.person()) break;
+  }
+  ck_assert_int_lt(looks, 20);
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "followed_person",
@@ -225,5 +238,5 @@ int main() {
        heights_are_judged_by_where_the_feet_are, two_wrong_heights_do_not_bend_the_line,
        the_line_tilts_with_the_camera, who_was_hidden_for_less_than_three_seconds_keeps_the_identity,
        a_person_follows_a_track_that_looks_have_found_right, an_identity_is_published_once,
-       a_hit_that_is_not_as_high_as_people_are_is_none});
+       a_hit_that_is_not_as_high_as_people_are_is_none, other_ground_is_learnt_anew});
 }

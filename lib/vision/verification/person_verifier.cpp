@@ -251,15 +251,18 @@ std::optional<PersonVerifier::Look> PersonVerifier::choose() {
   return Look{*region, pictures_.number()};
 }
 
-// Fills found_ with one detection a person, but for those who are higher or lower than people are where they stand.
+// Fills found_ with one detection a person, but for those who are higher or lower than people are where they stand. Who
+// certainly is one teaches that all the same: the camera may look at other ground than before.
 void PersonVerifier::take_persons(std::span<const PersonDetection> hits, double threshold) {
+  found_.assign(hits.begin(), hits.end());
+  merge_hits(found_, threshold);
+  for (const PersonDetection& person : found_)
+    if (person.score >= p_.line_certain * threshold) line_.learn(person.box, p_);
   found_.clear();
   std::ranges::copy_if(hits, std::back_inserter(found_), [&](const PersonDetection& hit) {
     return line_.judge(hit.box, p_) != HeightLine::Fit::contradicts;
   });
   merge_hits(found_, threshold);
-  for (const PersonDetection& person : found_)
-    if (person.score >= p_.line_certain * threshold) line_.learn(person.box, p_);
 }
 
 void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> hits, double threshold,
