@@ -37,10 +37,9 @@ struct VerificationParameters {
 
   // The line of the heights (height_line.cpp). Shares of a person's height, but for the slope.
   double line_noise = 0.07;  // of a detection's height about the line. Measured: .05 of true boxes
-  double line_slope = 1,
-         line_slope_spread =
-             1;  // before anything is known, and its standard deviation: of cameras as high as people
-  double line_least = 6;        // samples: with fewer nothing is known
+  // Before anything is known, and its standard deviation: 1 is that of a camera as high as people are.
+  double line_slope = 1, line_slope_spread = 1;
+  int line_least = 6;           // samples: with fewer nothing is known
   double line_doubt = 0.1;      // standard deviation of the line: where it is larger nothing is known
   double line_tolerance = 0.2;  // logarithm of a height over the line's that a person may have
   double line_certain = 1.3;    // in thresholds: the score of a detection that teaches
