@@ -160,7 +160,7 @@ bool nobody(const fs::path& folder, Asked& asked) {
   const char* hours = std::getenv("CERBERUS_HOURS");
   const int minutes = hours ? std::max(1, static_cast<int>(60 * std::atof(hours))) : 1;
   EmptyRoom room(std::move(*frames), minutes * 60 * kRate);
-  int all = 0, moving = 0, like = 0, persons = 0;
+  int all = 0, moving = 0, like = 0, persons = 0, first = -1;
   const bool measured = for_each_sample(
       "appsrc name=in format=time block=true max-buffers=4 max-bytes=0 caps=\"" + room.caps() +
           "\" ! motiondetect ! personverify ! appsink name=out sync=false max-buffers=4",
@@ -172,6 +172,7 @@ bool nobody(const fs::path& folder, Asked& asked) {
           any_person = any_person || r->person;
           any_like = any_like || r->kind == CERBERUS_REGION_KIND_PERSON_LIKE;
         }
+        if (any_person && first < 0) first = all;
         ++all, moving += regions->len > 0, like += any_like, persons += any_person;
         g_ptr_array_unref(regions);
       },
@@ -180,6 +181,7 @@ bool nobody(const fs::path& folder, Asked& asked) {
   std::printf("an empty room, %d min: of %d frames with a region %d, like a person %d, with a person %d%s\n",
               minutes, all, moving, like, persons,
               asked.at_most("frames with a person who is not there", persons, 0).c_str());
+  if (first >= 0) std::printf("  the first after %.1f s\n", static_cast<double>(first) / kRate);
   return true;
 }
 
