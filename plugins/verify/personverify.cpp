@@ -16,7 +16,8 @@
  *
  * Between two looks of the detector a person goes on as fast as the looks have shown, or with a track that three looks in a
  * row have found right. One without a track whom the last look at the place missed is left out until a look shows the
- * person again; who is found again within 3 s keeps the identity. While a person has a track's identity elsewhere, that
+ * person again, and so is one whom a single look shows, without certainty, where only the picture changed; who is found
+ * again within 3 s keeps the identity. While a person has a track's identity elsewhere, that
  * track is left out. The detector's hits teach how high people are where they stand, and what is much higher or lower
  * is no person.
  *

@@ -388,7 +388,12 @@ START_TEST(a_person_whom_no_track_shows_is_found_where_the_picture_changes) {
   const Box person = person_at(228);
   ck_assert(look->region.x <= person.x && look->region.x + look->region.width >= person.right());
   ck_assert(look->region.y <= person.y && look->region.y + look->region.height >= person.bottom());
-  rig.found(*look, {{person, 3}, {person_at(450), 3}});
+  rig.found(*look, {{person, 2}, {person_at(450), 3}});
+  ck_assert(rig.result().empty());  // not certain, and no track has been there
+  for (int n = 8; n < 12; ++n) rig.frame({person_at(200 + 4 * n)}, {});
+  look = rig.verifier.choose();
+  ck_assert(look.has_value());
+  rig.found(*look, {{person_at(244), 2}});
   ck_assert_uint_eq(rig.result().size(), 1);
   ck_assert(rig.result()[0].person && rig.result()[0].candidate == -1);
 }

@@ -65,6 +65,7 @@ void PersonVerifier::update(GrayView picture, Size frame, const Transform& motio
   for (Person& person : people_) {
     person.since_support += seconds;
     if (is_supported(person.box())) person.since_support = 0;
+    person.sure = person.sure || share_on_tracks(person.box()) >= p_.on_track;
   }
   forget_if([&](const Person& person) {
     const double longest = person.moved() ? p_.longest : p_.longest_still;
@@ -297,6 +298,8 @@ void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> hi
       if (same->moved() || supported) same->since_seen = 0;
     } else if (supported && !is_part(next.box())) {
       next.evidence = 1, next.confidence = confidence(detection.score);
+      next.sure =
+          share_on_tracks(next.box()) >= p_.on_track || detection.score >= p_.line_certain * threshold;
       people_.push_back(next);
     }
   }

@@ -79,8 +79,10 @@ class PersonVerifier {
     int agreed = 0;
     std::array<Box, PictureHistory::kKept> track_boxes{};  // empty: none was bound
     bool missed = false;                                   // by the last look at its place
+    bool sure = false;  // a track has been there, or the detector was certain
     // Without a track of its own, and missed, it may have been drawn away from the person: it waits for a further look.
-    bool is_shown() const { return candidate >= 0 || !missed; }
+    // So does who was found once, not certainly, where only the picture changed.
+    bool is_shown() const { return candidate >= 0 || (!missed && (sure || looks() > 1)); }
   };
   // Somebody whom looks do not find any more, who may be hidden: carried on by the last velocity.
   struct Lost {
