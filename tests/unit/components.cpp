@@ -138,6 +138,24 @@ START_TEST(an_object_that_stopped_stays_foreground_for_ten_seconds) {
 }
 END_TEST
 
+// What is left of a ghost between the sides of a door: they are edges of the frame that go on above it. Not those of a
+// thing that was put down there.
+START_TEST(what_rests_between_edges_of_the_scene_is_no_object) {
+  constexpr Rect kStrip{150, 100, 8, 40};
+  for (const bool door : {false, true}) {
+    Scene s(200);
+    Scene::paint(s.frame, kStrip, 200);
+    if (door) {
+      for (auto* picture : {&s.frame, &s.background}) Scene::paint(*picture, {150, 60, 8, 80}, 200);
+      Scene::paint(s.background, kStrip, 100);
+    }
+    s.differs(kStrip, 100);
+    s.classify();
+    ck_assert_int_eq(count(s.mask, kStrip), door ? 0 : all(kStrip));
+  }
+}
+END_TEST
+
 START_TEST(a_ghost_is_absorbed_at_once) {
   for (const bool young : {false, true}) {
     Scene s(young ? 10 : 255);
@@ -262,12 +280,33 @@ START_TEST(two_people_before_a_textured_background_are_not_the_rims_of_one) {
     Scene s(10);
     for (int x = 0; x < 256; ++x)
       if (c.wall == slope || (c.wall == bricks && x % 16 < 8))
-        Scene::paint(s.frame, {x, 0, 1, kSize.height}, c.wall == slope ? x : 120);
+        for (auto* picture : {&s.frame, &s.background})
+          Scene::paint(*picture, {x, 0, 1, kSize.height}, c.wall == slope ? x : 120);
     s.differs(left, 1);
     s.differs(right, 1);
     s.merge_neighbours();
     ck_assert_int_eq(count(s.mask, between), c.one ? all(between) : 0);
     ck_assert_int_eq(count(s.mask, left) + count(s.mask, right), all(left) + all(right));
+  }
+}
+END_TEST
+
+// Both sides of the gap are edges of the frame. Those of one body are not: its front rim ends in the body.
+START_TEST(two_people_before_an_even_wall_are_not_the_rims_of_one) {
+  constexpr Rect kLeft{100, 80, 20, 80}, kRight{180, 80, 20, 80}, kBetween{120, 80, 60, 80};
+  for (const bool body : {false, true}) {
+    Scene s(10);
+    for (const Rect& r : {kLeft, kRight}) Scene::paint(s.frame, r, 200);
+    if (body) {  // from 120 to 180 it was before: what it left is background now
+      Scene::paint(s.frame, {120, 80, 80, 80}, 200);
+      Scene::paint(s.frame, kLeft, 100);
+      Scene::paint(s.background, {100, 80, 80, 80}, 200);
+    }
+    s.differs(kLeft, 1);
+    s.differs(kRight, 1);
+    s.merge_neighbours();
+    ck_assert_int_eq(count(s.mask, kBetween), body ? all(kBetween) : 0);
+    ck_assert_int_eq(count(s.mask, kLeft) + count(s.mask, kRight), all(kLeft) + all(kRight));
   }
 }
 END_TEST
@@ -316,6 +355,22 @@ START_TEST(a_fragment_near_a_large_component_is_dropped_over_a_young_background)
 END_TEST
 
 // Merged with its neighbour it would add a strip of background between the corners of two boxes.
+// A person of whom the picture's edge shows little, beside another one: both sides are a person's, or cannot be seen.
+START_TEST(a_small_object_near_a_large_one_is_no_fragment_of_it) {
+  for (const int left : {0, 60}) {
+    Scene s(10);
+    const Rect small{left, 100, 12, 60}, large{left + 35, 60, 60, 110};
+    for (const Rect& r : {small, large}) {
+      Scene::paint(s.frame, r, 200);
+      s.differs(r, 1);
+    }
+    s.merge_neighbours();
+    ck_assert_int_eq(count(s.mask, small), all(small));
+    ck_assert_int_eq(count(s.mask, {left + 12, 100, 23, 60}), 0);
+  }
+}
+END_TEST
+
 START_TEST(a_fragment_beside_a_large_component_is_dropped_not_merged) {
   constexpr Rect kPiece{140, 140, 12, 20}, kTiny{140, 100, 7, 7};  // 10 away: less than a fifth of the height
   for (const Rect& piece : {kPiece, kTiny}) {
@@ -523,6 +578,7 @@ int main() {
                      a_moving_component_is_an_object,
                      in_clutter_no_neighbours_are_merged,
                      an_object_that_stopped_stays_foreground_for_ten_seconds,
+                     what_rests_between_edges_of_the_scene_is_no_object,
                      a_ghost_is_absorbed_at_once,
                      over_a_young_background_a_component_needs_motion,
                      objects_over_a_young_background_are_reported,
@@ -531,9 +587,11 @@ int main() {
                      for_a_moving_camera_the_outline_decides_about_rest_over_a_young_background,
                      two_rims_are_one_object_over_a_young_background,
                      two_people_before_a_textured_background_are_not_the_rims_of_one,
+                     two_people_before_an_even_wall_are_not_the_rims_of_one,
                      a_rim_belongs_to_its_neighbour,
                      rims_far_apart_or_of_other_heights_are_two_objects,
                      a_fragment_near_a_large_component_is_dropped_over_a_young_background,
+                     a_small_object_near_a_large_one_is_no_fragment_of_it,
                      a_fragment_beside_a_large_component_is_dropped_not_merged,
                      a_ghost_at_the_picture_s_edge_needs_more_motion,
                      the_boundary_of_the_visible_background_is_no_edge,

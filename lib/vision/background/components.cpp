@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "vision/background/background_light.h"
+#include "vision/background/component_sides.h"
 #include "vision/background/fragment_joining.h"
 
 namespace cerberus::vision {
@@ -33,14 +34,12 @@ constexpr struct Parameters {
   double least_area = 1 / 1280.0;  // of the picture: the outline of a smaller component is no evidence
 
   // Neighbours. Gaps are shares of the taller one's height.
-  double gap = 0.2;             // between two of similar size
-  double narrow_gap = 1;        // between two narrow ones
-  double fragment_gap = 0.5;    // between one and its fragment, or a narrow one and the rest
-  double narrow = 0.3;          // a narrow one's width, of its height
-  double level = 0.5;           // of the lower one's height at which they stand beside each other
-  double fragment = 1 / 3.0;    // of the larger one's area: below, a component is a fragment
-  int visible_difference = 12;  // grey levels by which a pixel certainly differs from the background
-  double uneven = 0.25;         // share of a gap's pixels that may differ so much from their neighbours
+  double gap = 0.2;           // between two of similar size
+  double narrow_gap = 1;      // between two narrow ones
+  double fragment_gap = 0.5;  // between one and its fragment, or a narrow one and the rest
+  double narrow = 0.3;        // a narrow one's width, of its height
+  double level = 0.5;         // of the lower one's height at which they stand beside each other
+  double fragment = 1 / 3.0;  // of the larger one's area: below, a component is a fragment
 
   double least_fragment = 1 / 2560.0;  // of the picture: a smaller component joins nothing
   std::size_t most_fragments = 128;    // more components are clutter
@@ -48,24 +47,6 @@ constexpr struct Parameters {
   // comparison of all pairs would take longer than a frame.
   std::size_t most_components = 512;
 } kParameters;
-
-struct Gap {
-  int left, top, right, bottom;
-};
-
-// Whether the gap between two components may be the inside of a moving object: only an even inside differs from
-// nothing. A gap that is uneven over as many pixels as the object would have moved (`moved`, the components' width) and
-// has not changed is background between two objects.
-bool is_even(GrayView frame, const Gap& gap, int moved) {
-  const int step = std::max(std::min(moved, (gap.right - gap.left) / 2), 1);
-  int uneven = 0, seen = 0;
-  for (int y = gap.top; y < gap.bottom; ++y)
-    for (int x = gap.left; x + step < gap.right; ++x) {
-      ++seen;
-      uneven += std::abs(frame.at(x + step, y) - frame.at(x, y)) > kParameters.visible_difference;
-    }
-  return uneven <= kParameters.uneven * seen;
-}
 
 }  // namespace
 
@@ -80,6 +61,7 @@ void ForegroundComponents::preallocate(Size picture) {
   labeller_.preallocate(picture);
   evidence_.reserve(labeller_.limits().components);
   origins_.preallocate(picture);
+  resting_ghosts_.preallocate(picture);
 }
 
 void ForegroundComponents::reset() {
@@ -247,11 +229,13 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
                                     MutableBitView mask, MutableBitView absorb) {
   labeller_.find(mask, input.frame.width);
   const auto components = labeller_.components();
+  found_ = components.size();
   evidence_.assign(components.size(), {});
   if (!input.still && ++moved_ == kParameters.shake) origins_.reset();
   measure(input, windows, mask);
   for (std::size_t i = 0; i < components.size(); ++i) decide(input, components[i], evidence_[i]);
   if (input.still) {
+    doubt_edges(input.frame, mask);
     if (components.size() <= kParameters.most_components) {
       find_ghosts();
       resolve_origins();
@@ -269,8 +253,19 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
     if (!evidence.kept && (!(input.still && evidence.object) || evidence.doubtful))
       clear_bits(mask.row(r.row), r.first, r.end);
   }
-  if (input.still) moved_ = 0;
+  if (input.still) {
+    resting_ghosts_.remove({input.frame, input.background, input.quiet}, windows.recent, labeller_, mask,
+                           absorb);
+    moved_ = 0;
+  }
   return young_objects;
+}
+
+// What rests and is an object by its sides only is none where these are edges of the scene.
+void ForegroundComponents::doubt_edges(GrayView frame, BitView mask) {
+  for (std::size_t i = 0; i < evidence_.size() && evidence_.size() <= kParameters.most_components; ++i)
+    if (evidence_[i].object && !evidence_[i].moved_recently && sides_go_on(frame, mask, labeller_.runs(), i))
+      evidence_[i].object = false;
 }
 
 // absorb := pixels of the components that are not kept: doubtful ones at once, the others after as many frames at rest
@@ -301,6 +296,10 @@ void ForegroundComponents::merge_neighbours(const ComponentInput& input, const F
     const std::uint8_t* age = input.age.row(r.row);
     for (int x = r.first; x < r.end; ++x) evidence_[r.component].young_pixels += age[x] < windows.young;
   }
+  // Before a camera that stands: over a moving one the background is blurred along its edges.
+  const auto is_object = [&](std::size_t i, bool right, const Rows& rows) {
+    return input.still && is_side_of_object(input.frame, input.background, labeller_.runs(), i, right, rows);
+  };
   for (std::size_t i = 0; i < components.size(); ++i) {
     const Component& a = components[i];
     if (2 * evidence_[i].young_pixels < static_cast<int>(a.area)) continue;
@@ -318,12 +317,15 @@ void ForegroundComponents::merge_neighbours(const ComponentInput& input, const F
                            : narrow_a || narrow_b ? p.fragment_gap
                                                   : p.gap;
       const bool two = a.area >= p.fragment * b.area || narrow_a || narrow_b;
+      const Rows beside{between.top, between.bottom}, own{a.top, a.bottom};
+      const bool a_is_left = a.left < b.left;
       if (level && across > 0 && across < reach * tall && two && !evidence_[i].fragment &&
-          is_even(input.frame, between, std::min(a.width(), b.width()))) {
+          is_even(input.frame, between, std::min(a.width(), b.width())) &&
+          !(is_object(i, a_is_left, beside) && is_object(j, !a_is_left, beside))) {
         for (int y = between.top; y < between.bottom; ++y) set_bits(mask.row(y), between.left, between.right);
         evidence_[i].merged = evidence_[j].merged = true;
       } else if (across < p.fragment_gap * tall && down < p.fragment_gap * tall &&
-                 a.area < p.fragment * b.area) {
+                 a.area < p.fragment * b.area && !(is_object(i, true, own) && is_object(i, false, own))) {
         evidence_[i].fragment = true;
       }
     }
@@ -335,7 +337,7 @@ void ForegroundComponents::merge_neighbours(const ComponentInput& input, const F
 
 void ForegroundComponents::join_fragments(const ComponentInput& input, MutableBitView closed,
                                           MutableBitView mask) {
-  if (!input.still || labeller_.components().size() < 2) return;
+  if (!input.still || found_ < 2) return;
   const Size size = input.frame.size();
   const auto components = labeller_.find(
       closed, size.width, static_cast<std::uint32_t>(kParameters.least_fragment * size.area()));
@@ -343,7 +345,8 @@ void ForegroundComponents::join_fragments(const ComponentInput& input, MutableBi
 }
 
 std::size_t ForegroundComponents::bytes() const {
-  return labeller_.bytes() + evidence_.capacity() * sizeof(Evidence) + origins_.bytes();
+  return labeller_.bytes() + evidence_.capacity() * sizeof(Evidence) + origins_.bytes() +
+         resting_ghosts_.bytes();
 }
 
 }  // namespace cerberus::vision

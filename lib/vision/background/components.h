@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vision/background/component_origins.h"
+#include "vision/background/resting_ghosts.h"
 #include "vision/geometry/warp.h"
 #include "vision/image/image.h"
 #include "vision/image/labelling.h"
@@ -80,6 +81,7 @@ class ForegroundComponents {
   void measure(const ComponentInput& input, const FrameWindows& windows, BitView mask);
   void measure_edges(const ComponentInput& input, const Run& run, BitView mask, Evidence& evidence) const;
   void decide(const ComponentInput& input, const Component& component, Evidence& evidence) const;
+  void doubt_edges(GrayView frame, BitView mask);
   void find_ghosts();
   void resolve_origins();
   void absorb_rest(const ComponentInput& input, const FrameWindows& windows, MutableBitView absorb) const;
@@ -87,6 +89,8 @@ class ForegroundComponents {
   Labeller labeller_;
   std::vector<Evidence> evidence_;  // by component
   ComponentOrigins origins_;
+  RestingGhosts resting_ghosts_;
+  std::size_t found_ = 0;  // components of the last picture
   int moved_ =
       3;  // frames since the camera stood; as many as `shake` and more: it has moved away from what it saw
 };
