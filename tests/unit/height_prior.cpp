@@ -3,6 +3,7 @@
 
 #include <check.h>
 
+#include <cmath>
 #include <random>
 
 #include "support/motions.h"
@@ -73,6 +74,19 @@ START_TEST(a_prior_learnt_in_one_row_is_unknown_in_rows_far_away) {
 }
 END_TEST
 
+// Of n alike samples in one row the mean has an error of .1 x sqrt(2 / n), and the slope is known from the horizon alone,
+// which is as uncertain as it is far away: 20 rows further on, 20 / 150 of a height.
+START_TEST(the_line_is_as_uncertain_as_its_samples_are_few_and_far_away) {
+  HeightPrior prior;
+  for (int i = 0; i < 16; ++i) prior.learn(150, 75);
+  const double error = 0.1 * std::sqrt(2 / 16.0);
+  ck_assert_double_eq_tol(prior.uncertainty(150), error, 1e-6);
+  const double there = prior.height(170);
+  ck_assert_double_eq_tol(there, 85, 1e-6);
+  ck_assert_double_eq_tol(prior.uncertainty(170) * there, std::hypot(error * 75, 20.0 / 150 * 75), 1e-5);
+}
+END_TEST
+
 START_TEST(the_line_moves_with_the_camera) {
   HeightPrior prior;
   teach(prior, 100, 60, 200, 0, 4);
@@ -112,8 +126,9 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "height_prior", {the_height_is_unknown_before_eight_samples_agree,
-                       the_line_is_found_among_four_wrong_of_ten, heights_without_order_give_no_line,
-                       a_prior_learnt_in_one_row_is_unknown_in_rows_far_away, the_line_moves_with_the_camera,
-                       a_zoom_about_the_middle_scales_heights_and_rows, a_new_truth_replaces_an_old_one});
+      "height_prior",
+      {the_height_is_unknown_before_eight_samples_agree, the_line_is_found_among_four_wrong_of_ten,
+       heights_without_order_give_no_line, a_prior_learnt_in_one_row_is_unknown_in_rows_far_away,
+       the_line_is_as_uncertain_as_its_samples_are_few_and_far_away, the_line_moves_with_the_camera,
+       a_zoom_about_the_middle_scales_heights_and_rows, a_new_truth_replaces_an_old_one});
 }

@@ -66,10 +66,11 @@ TrackPhase after(TrackHypothesis t, const std::function<void(TrackHypothesis&)>&
   return after(std::vector{t}, turning);
 }
 
-std::optional<TrackState> published(TrackHypothesis t, const std::function<void(TrackHypothesis&)>& change) {
+std::optional<TrackState> published(TrackHypothesis t, const std::function<void(TrackHypothesis&)>& change,
+                                    bool turning = false) {
   change(t);
   LifeCycle life;
-  life.advance({}, {kFrame, kSeconds, false, camera()}, {});
+  life.advance({}, {kFrame, kSeconds, turning, camera()}, {});
   return life.published(t);
 }
 
@@ -129,8 +130,8 @@ START_TEST(a_track_without_region_is_coasted_and_lost_after_its_time) {
   ck_assert(coasted(9, 0) == TrackPhase::coasted);
   ck_assert(coasted(9, 0.95) == TrackPhase::coasted);  // .99 s
   ck_assert(coasted(9, 0.97) == TrackPhase::lost);     // 1.01 s
-  ck_assert(coasted(0.8, 0.35) == TrackPhase::coasted);
-  ck_assert(coasted(0.8, 0.37) == TrackPhase::lost);  // .41 s, half of .8
+  ck_assert(coasted(0.8, 0.75) == TrackPhase::coasted);
+  ck_assert(coasted(0.8, 0.77) == TrackPhase::lost);  // .81 s, longer than it was seen
   ck_assert(coasted(9, 0.25, 5) == TrackPhase::coasted);
   ck_assert(coasted(9, 0.27, 5) == TrackPhase::lost);  // at the edge, up to .1 S: .3 of it
   ck_assert(coasted(9, 0.27, 11) == TrackPhase::coasted);
@@ -296,6 +297,22 @@ START_TEST(tracks_in_view_are_published_while_their_place_is_certain) {
   ck_assert(!coasted([](TrackHypothesis& t) { t.x.position = 29; }));  // its box begins in .1 S
   ck_assert(coasted([](TrackHypothesis& t) { t.age = 0.61; }));        // 3 x .2 s
   ck_assert(!coasted([](TrackHypothesis& t) { t.age = 0.59; }));
+  const auto at_edge = [](double left, double right, double largest) {
+    return published(track(Confirmed{}), [=](TrackHypothesis& t) {
+      t.x.position = (left + right) / 2;
+      t.w.value = std::log(right - left);
+      t.uncut.height = largest;
+    });
+  };
+  ck_assert(at_edge(0, 19, 100) && at_edge(621, 640, 100));
+  ck_assert(!at_edge(0, 17, 100) && !at_edge(623, 640, 100));  // less than .18 x 100
+  ck_assert(at_edge(7, 24, 100));                              // not cut by the edge: beyond .01 x 640
+  ck_assert(!at_edge(0, 19, 110));                             // it was higher before
+  TrackHypothesis sliver = track(Confirmed{});
+  sliver.x.position = 8;
+  sliver.w.value = std::log(16);
+  ck_assert(!published(sliver, as_it_is));
+  ck_assert(published(sliver, as_it_is, true));  // before a camera that turns it may be coming in
   for (const TrackLife& life : {TrackLife(Confirmed{}), TrackLife(Coasted{}), TrackLife(Stopped{})}) {
     const auto shared = [&](bool occluded, double unlocated) {
       return published(track(life),

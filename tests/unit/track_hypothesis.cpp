@@ -191,7 +191,7 @@ START_TEST(a_track_that_has_a_group_s_box_or_shares_its_region_for_long_is_a_gro
   LifeCycle::confirm(other, 7);
   other.correct({{150, 192, 200, 100}, 9000, 0.9, 1, RegionKind::group}, false, 0.04, kFrame);
   ck_assert(other.kind == RegionKind::thing);
-  other.shared.time = 0.2;  // s: long enough
+  other.shared.time = 1;  // s: long enough
   other.correct({{150, 192, 200, 100}, 9000, 0.9, 1, RegionKind::group}, false, 0.04, kFrame);
   ck_assert(other.kind == RegionKind::group);
 }
@@ -207,10 +207,10 @@ START_TEST(a_person_whose_region_is_a_group_for_some_frames_stays_a_person_and_i
   };
   ck_assert(see(RegionKind::person_like, 1) == RegionKind::person_like);
   for (int round = 0; round < 3; ++round) {
-    ck_assert(see(RegionKind::group, 3) == RegionKind::person_like);
+    ck_assert(see(RegionKind::group, 24) == RegionKind::person_like);
     ck_assert(see(RegionKind::person_like, 1) == RegionKind::person_like);
   }
-  ck_assert(see(RegionKind::group, 6) == RegionKind::group);
+  ck_assert(see(RegionKind::group, 26) == RegionKind::group);
   ck_assert(see(RegionKind::part, 1) == RegionKind::part);
   ck_assert(see(RegionKind::group, 1) == RegionKind::group);  // no person before
 }

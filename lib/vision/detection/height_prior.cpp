@@ -86,6 +86,11 @@ void HeightPrior::fit() {
   ready_ = true;
 }
 
+double HeightPrior::uncertainty(double foot) const {
+  const double d = foot - mean_foot_;
+  return std::sqrt(mean_variance_ + slope_variance_ * d * d) / (mean_height_ + slope_ * d);
+}
+
 double HeightPrior::height(double foot) const {
   const Parameters& q = parameters_;
   if (!ready_) return 0;

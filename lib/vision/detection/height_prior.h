@@ -26,7 +26,8 @@ class HeightPrior {
     double share = 0.5;  // of the samples' weight that must agree
     int least = 8;       // agreeing samples before the prior answers
     double uncertain = 0.16;  // relative standard error of the line beyond which it does not answer
-    double repeats = 4.0;     // samples that count as one: neighbouring frames show the same person
+    // Samples that count as one: the strides of one person are alike. swept: docs/quality.md, 1 to 4.
+    double repeats = 2.0;
     int guesses = 40;         // pairs of samples tried as lines
     int through_horizon = 4;  // every so manieth guess is a line through the picture's upper edge
     double baseline = 0.2;    // of the larger height: distance of the foot rows of a pair, at least
@@ -52,6 +53,9 @@ class HeightPrior {
   // Expected height in pixels of a person whose feet are at this row; 0 while unknown: before enough samples agree, and
   // at rows too far from all samples.
   double height(double foot) const;
+
+  // Relative standard error of that height: of the line, not of a person.
+  double uncertainty(double foot) const;
 
   bool ready() const { return ready_; }
 

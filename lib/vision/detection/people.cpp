@@ -10,6 +10,7 @@
 #include <array>
 #include <climits>
 #include <cmath>
+#include <numbers>
 
 #include "vision/image/preallocate.h"
 
@@ -48,13 +49,13 @@ PeopleFinder::PeopleFinder(const Parameters& parameters) : parameters_(parameter
                                                  cells(p.reach)};
     }
   }
-  const auto scale = [&](double factor, double spread) {
-    const double deviation = std::log(factor) / spread;
-    return Scale{factor, kUnit * q.height_weight * deviation * deviation / 2};
-  };
-  scales_ = {scale(1, q.spread), scale(1 - q.other_height, q.spread), scale(1 + q.other_height, q.spread)};
+  const auto scale = [](double factor) { return Scale{factor, std::log(factor)}; };
+  for (std::size_t i = 0; i < scales_.size(); ++i) {
+    const double steps = static_cast<double>((i + 1) / 2) * q.other_height;
+    scales_[i] = scale(i % 2 == 0 ? 1 + steps : 1 - steps);
+  }
   for (std::size_t i = 0; i < unknown_scales_.size(); ++i)
-    unknown_scales_[i] = scale(1 - static_cast<double>(i) * q.unknown_step, q.unknown_spread);
+    unknown_scales_[i] = scale(1 - static_cast<double>(i) * q.unknown_step);
 }
 
 void PeopleFinder::preallocate(Size picture) {
@@ -121,8 +122,11 @@ void PeopleFinder::lay_grid(BitView pixels, const Bounds& window, double tallest
   shapes_.assign(static_cast<std::size_t>(rows_) + 1, {});
   for (int r = 0; r <= rows_; ++r) {
     const double height = (height_known_ ? prior_->height(y0_ + r * step_) : tallest) / step_;
-    if (height > 0)
-      shapes_[r] = {std::max(2, whole(height)), std::max(1, whole(parameters_.aspect * height))};
+    if (!(height > 0)) continue;
+    const double spread = height_known_ ? std::hypot(parameters_.spread, prior_->uncertainty(y0_ + r * step_))
+                                        : parameters_.unknown_spread;
+    shapes_[r] = {std::max(2, whole(height)), std::max(1, whole(parameters_.aspect * height)),
+                  static_cast<float>(spread)};
   }
   scores_.resize(static_cast<std::size_t>(columns_) + 1);
 }
@@ -194,15 +198,16 @@ int PeopleFinder::score(int foot, int height, int first, int end) {
 // more. With an anchor, a column, the foreground that stays unexplained between it and the box counts against it.
 void PeopleFinder::try_row(int foot, const Scale& scale, int from, int to, int anchor, Candidate& best) {
   const Parameters& q = parameters_;
-  const auto [usual, usual_width] = shapes_[static_cast<std::size_t>(foot)];
-  const int h = std::min(kTallest, whole(scale.factor * usual));
-  const int w = std::max(2, whole(scale.factor * usual_width));
-  if (usual == 0 || foot < h || foot - window_.top < q.least_feet * h) return;
+  const Shape& usual = shapes_[static_cast<std::size_t>(foot)];
+  const int h = std::min(kTallest, whole(scale.factor * usual.height));
+  const int w = std::max(2, whole(scale.factor * usual.width));
+  if (usual.height == 0 || foot < h || foot - window_.top < q.least_feet * h) return;
   const int reach = bodies_[static_cast<std::size_t>(h)][kParts - 1].reach;
   const int first = std::max({from + w / 2, reach, inside_.left});
   const int end = std::min({to + w / 2, columns_ - reach + 1, inside_.right + 1});
   if (first >= end) return;
-  const int cost = static_cast<int>(scale.cost * h * h);
+  const double deviation = scale.log / usual.spread;
+  const int cost = static_cast<int>(kUnit * q.height_weight * deviation * deviation / 2 * h * h);
   const int least =
       std::max(best.score, static_cast<int>(kUnit * (height_known_ ? q.least_gain : 0) * h * h));
   // All that moves in these rows, within reach of these axes, may be too little.
@@ -227,23 +232,33 @@ void PeopleFinder::try_row(int foot, const Scale& scale, int from, int to, int a
 }
 
 // The best position for one more person whose left edge lies in [from, to). Score 0: none. The expected height is tried
-// everywhere, and the others where that fits best; where the height is not known, all of them everywhere.
+// everywhere, and its neighbours where that fits best. Heights that the line does not exclude where it is uncertain are
+// tried everywhere, and where the height is not known, all of them.
 PeopleFinder::Candidate PeopleFinder::best(int from, int to, int anchor) {
+  constexpr double kDeviations = 2;  // that a height may be off
+  const double sure =
+      std::numbers::sqrt2 * parameters_.spread;  // the line's error is as large as people differ
   Candidate best;
-  const auto try_everywhere = [&](const Scale& scale) {
-    for (int foot = rows_; foot > window_.top; --foot) try_row(foot, scale, from, to, anchor, best);
+  const auto try_everywhere = [&](std::span<const Scale> scales) {
+    for (const Scale& scale : scales)
+      for (int foot = rows_; foot > window_.top; --foot) {
+        const Shape& shape = shapes_[static_cast<std::size_t>(foot)];
+        const bool allowed =
+            !height_known_ || (shape.spread > sure && std::abs(scale.log) < kDeviations * shape.spread);
+        if (scale.factor == 1 || allowed) try_row(foot, scale, from, to, anchor, best);
+      }
   };
   if (!height_known_) {
-    for (const Scale& scale : unknown_scales_) try_everywhere(scale);
+    try_everywhere(unknown_scales_);
     return best;
   }
-  try_everywhere(scales_[0]);
+  try_everywhere(scales_);
   if (best.score == 0) return best;
   const Candidate usual = best;
   constexpr int kAround = 2;  // cells
   for (int foot = std::max(1, usual.bottom - kAround); foot <= std::min(rows_, usual.bottom + kAround);
        ++foot)
-    for (std::size_t i = 1; i < scales_.size(); ++i)
+    for (std::size_t i = 1; i <= kNeighbours; ++i)
       try_row(foot, scales_[i], std::max(from, usual.left - kAround), std::min(to, usual.left + kAround + 1),
               anchor, best);
   return best;
@@ -268,12 +283,12 @@ int PeopleFinder::explain(bool from_the_left) {
   chosen_.clear();
   clear_explained();
   add_up(0);
-  const auto [height, body] = shapes_[static_cast<std::size_t>(std::min(window_.bottom, rows_))];
-  const int width = std::max(1, body);
+  const Shape& usual = shapes_[static_cast<std::size_t>(std::min(window_.bottom, rows_))];
+  const int width = std::max(1, usual.width);
   int total = 0, edge = window_.left;
   while (chosen_.size() < kMostPeople) {
     // The rest may be too little for the price of the least part of a person.
-    const double price = kUnit * parameters_.price * height * body / parameters_.least_part;
+    const double price = kUnit * parameters_.price * usual.height * usual.width / parameters_.least_part;
     if (moving_before(columns_) * bands_[2].core_moving < price) break;
     Candidate c;
     if (from_the_left) {

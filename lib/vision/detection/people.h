@@ -47,7 +47,8 @@ class PeopleFinder {
                               {0.14, 0.50, 0.095, 0.175, 0.75, 0.30},
                               {0.50, 1, 0.095, 0.19, 0.65, 0.33}}};
     double elsewhere = 0.13;  // probability that a pixel of the group beside all persons is foreground
-    double price = 0.4;       // nats a pixel of a body; a whole person gains 1 to 1.7
+    // Nats a pixel of a body; a whole person gains 1 to 1.7. swept: docs/quality.md, .25 to .4.
+    double price = 0.3;
     // A height that differs from the expected one costs as in a log-normal prior.
     double height_weight = 0.16;  // nats of a squared height. derived: half of a body's pixels, 0.33 h^2
     // Of the logarithm of the height: adults differ by 5 %, the line is as uncertain. measured: MOTA on PETS09-S2L1 71.8
@@ -58,9 +59,8 @@ class PeopleFinder {
     double unknown_spread = 0.3;  // of the logarithm of the height
     double unknown_step = 0.08;   // of the blob's height
     double other_height = 0.08;  // a height that is tried as well is by so much lower or higher than expected
-    // Nats of a squared height: less is the rest of a person already found. measured: MOTA on PETS09-S2L1 68.9 with .05,
-    // 70.4 with .07, 71.8 with .09, 73.5 with .12, where a window of it loses 2 % of the people.
-    double least_gain = 0.09;
+    // Nats of a squared height: less is the rest of a person already found. swept: docs/quality.md, .08 to .12.
+    double least_gain = 0.1;
     double aspect = 0.36;  // width / height of a walking body
     // Rows of cells that a body is cut into, if it has as many pixels. measured: with 24 MOTA on PETS09-S2L1 is 3
     // lower, with 48 no higher.
@@ -111,9 +111,10 @@ class PeopleFinder {
   };
   struct Shape {  // of a person whose feet are at one row of the grid
     int height = 0, width = 0;
+    float spread = 0;  // of the logarithm of the height: that of people and the line's error
   };
-  struct Scale {  // a height that is tried: times the expected one, and its cost, 1/64 of a squared height
-    double factor = 1, cost = 0;
+  struct Scale {  // a height that is tried: times the expected one
+    double factor = 1, log = 0;
   };
   struct Rows {  // of a part of a body of one height: offsets from its top row, columns from its axis
     std::int16_t top = 0, bottom = 0, core = 0, reach = 0;
@@ -142,7 +143,9 @@ class PeopleFinder {
   Parameters parameters_;
   std::array<BodyBand, kParts> bands_;  // gains only
   std::array<Body, kTallest + 1> bodies_;
-  std::array<Scale, 3> scales_;
+  // The expected height, its neighbours, and those beyond, which are for a line that is uncertain.
+  static constexpr std::size_t kNeighbours = 2;
+  std::array<Scale, 7> scales_;
   std::array<Scale, 6> unknown_scales_;  // of the blob's height
   Size picture_;
   const HeightPrior* prior_ = nullptr;

@@ -180,6 +180,15 @@ bool LifeCycle::outside(const TrackHypothesis& t) const {
          t.y.position > frame_.size.height;
 }
 
+// Does the picture's left or right edge leave so little of it that most is outside? Before a camera that turns it may be
+// coming in.
+bool LifeCycle::is_sliver(const TrackHypothesis& t) const {
+  const Box box = t.box();
+  const double margin = t.parameters->cut_margin * frame_.size.width;
+  return !frame_.turning && (box.x < margin || box.right() > frame_.size.width - margin) &&
+         box.width < parameters_.sliver * std::max(t.uncut.height, box.height);
+}
+
 double LifeCycle::coast_time(const TrackHypothesis& t) const {
   return std::min(options_.coast_time, parameters_.coast_share * t.seen_for());
 }
@@ -230,6 +239,7 @@ void LifeCycle::end_duplicates(std::span<TrackHypothesis> tracks) const {
 std::optional<TrackState> LifeCycle::published(const TrackHypothesis& t) const {
   const Parameters& q = parameters_;
   if (t.match.occluded && t.shared.unlocated > q.occluded_coast) return {};
+  if (is_sliver(t)) return {};
   if (t.is(TrackPhase::confirmed)) return TrackState::seen;
   if (!t.in_view() || t.shared.unlocated >= t.parameters->crossing) return {};
   if (t.is(TrackPhase::stopped)) return TrackState::stopped;

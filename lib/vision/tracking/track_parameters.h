@@ -61,9 +61,9 @@ struct TrackParameters {
   double jump_speed = 2.5;  // S/s, beside a runner's speed
 
   // A region of another extent replaces the track's: after so many seconds ...
-  double whole_misfit = 0.2;    // s, of a person-like region, where the track's was one as well
+  double whole_misfit = 0.2;  // s, of a person-like region, where the track's was one as well
   double growing_misfit = 0.2;  // s, of a larger region that was reached in steps
-  double jumped_misfit = 0.6;   // s, of a larger region that was reached by a jump
+  double jumped_misfit = 0.6;  // s, of a larger region that was reached by a jump
   // s, of a smaller region: as for one that grows. measured: with .5 the skier of otb_Skiing is found in .37 of the frames
   // instead of .44; MOTA on TUD-Campus and TUD-Stadtmitte is .01 higher.
   double shrinking_misfit = 0.2;
@@ -72,9 +72,8 @@ struct TrackParameters {
   double panned_misfit = 0.05;
   double extent_known = 0.5;  // s of fitting regions from which on the extent is well known
   // s for which a track has shared a group's region, or a person's region was a group, and from which on it is of that kind.
-  // measured: MOTA on TUD-Stadtmitte is -.13 without the first, davis_tennis's player has .84 recall instead of .89 without
-  // the second. docs/quality.md has other values.
-  double shared_group = 0.2;
+  // swept: docs/quality.md, .2 to 1.
+  double shared_group = 1.0;
   double fragment_walk = 0.5;  // S that a fragment of a standing object moves before it replaces the object
 
   // Standing.
