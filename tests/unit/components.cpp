@@ -168,6 +168,20 @@ START_TEST(a_ghost_is_absorbed_at_once) {
 }
 END_TEST
 
+START_TEST(a_ghost_that_somebody_passes_is_absorbed_as_well) {
+  Scene s(200);
+  constexpr Rect kPlace{100, 80, 30, 80}, kWalker{130, 80, 40, 80};  // one component
+  Scene::paint(s.background, kPlace, 200);
+  Scene::paint(s.frame, kWalker, 180);
+  s.differs(kPlace, 30);
+  s.differs(kWalker, 0);
+  s.classify();
+  ck_assert_int_eq(count(s.mask, kPlace), 0);
+  ck_assert_int_eq(count(s.absorb, kPlace), all(kPlace));
+  ck_assert_int_eq(count(s.mask, kWalker), all(kWalker));
+}
+END_TEST
+
 START_TEST(over_a_young_background_a_component_needs_motion) {
   // Learnt for less than a second: whatever its outline; for less than two: if its outline is no edge of the frame.
   struct Case {
@@ -580,6 +594,7 @@ int main() {
                      an_object_that_stopped_stays_foreground_for_ten_seconds,
                      what_rests_between_edges_of_the_scene_is_no_object,
                      a_ghost_is_absorbed_at_once,
+                     a_ghost_that_somebody_passes_is_absorbed_as_well,
                      over_a_young_background_a_component_needs_motion,
                      objects_over_a_young_background_are_reported,
                      for_a_moving_camera_only_present_motion_counts,

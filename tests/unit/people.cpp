@@ -135,6 +135,23 @@ START_TEST(two_persons_side_by_side_that_touch_are_two) {
 }
 END_TEST
 
+// The line is known from one row. Further down it expects more than the person has, and is uncertain by as much.
+START_TEST(where_the_line_is_uncertain_a_height_may_differ_by_more) {
+  for (const bool sure : {false, true}) {
+    Scene scene;
+    scene.prior.reset();
+    for (int i = 0; i < 64; ++i) scene.prior.learn(sure ? 100 + 2 * (i % 50) : 150, sure ? 50 + i % 50 : 75);
+    PeopleFinder finder;
+    ck_assert_double_eq_tol(scene.prior.height(175), 87.5, 1);
+    ck_assert((scene.prior.uncertainty(175) < 0.1) == sure);
+    scene.draw(150, 175, 66);
+    const auto found = scene.find(finder);
+    ck_assert_uint_eq(found.size(), sure ? 0 : 1);
+    if (!sure) ck_assert_double_lt(found[0].box.height, 73);  // .84 of what is expected
+  }
+}
+END_TEST
+
 START_TEST(four_in_a_row_are_four) {
   Scene scene;
   PeopleFinder finder;
@@ -214,8 +231,9 @@ int main() {
       "people",
       {one_person_is_one_box_in_the_right_place, a_body_of_any_size_is_placed_to_a_cell,
        the_score_is_the_log_likelihood_ratio_a_pixel_of_the_body, two_persons_side_by_side_that_touch_are_two,
-       four_in_a_row_are_four, a_partly_occluded_person_is_found_by_the_visible_part,
-       specks_and_small_animals_are_no_persons, a_person_whose_feet_are_below_the_picture_is_placed_below_it,
+       where_the_line_is_uncertain_a_height_may_differ_by_more, four_in_a_row_are_four,
+       a_partly_occluded_person_is_found_by_the_visible_part, specks_and_small_animals_are_no_persons,
+       a_person_whose_feet_are_below_the_picture_is_placed_below_it,
        a_person_at_the_left_border_may_be_half_outside, a_larger_picture_gives_the_same_people_larger,
        a_second_call_gives_the_same_and_allocates_nothing});
 }
