@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Which components are objects and which are ghosts. Pictures are 320 x 240, the background is 100 everywhere, objects
 // are 200; expectations follow from the header's rules by hand.
-#include "vision/background/components.h"
+#include "vision/components/components.h"
 
 #include <algorithm>
 #include <span>

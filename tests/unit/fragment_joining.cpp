@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Gaps between fragments of one object. Pictures are 160 x 120, the background is 100 everywhere.
-#include "vision/background/fragment_joining.h"
+#include "vision/components/fragment_joining.h"
 
 #include <algorithm>
 #include <random>

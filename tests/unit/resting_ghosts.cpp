@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Ghosts within the foreground. Pictures are 160 x 120; a body is 20 x 60, 200 before a background of 100.
-#include "vision/background/resting_ghosts.h"
+#include "vision/components/resting_ghosts.h"
 
 #include <algorithm>
 #include <bit>

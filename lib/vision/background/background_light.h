@@ -12,15 +12,12 @@
 #include "vision/background/mosaic.h"
 #include "vision/change/light.h"
 #include "vision/change/light_samples.h"
+#include "vision/components/components.h"  // kRelearn
 #include "vision/geometry/warp.h"
 #include "vision/image/image.h"
 #include "vision/image/mask.h"
 
 namespace cerberus::vision {
-
-// Frames: a pixel that is learnt anew because it was wrong, or from one frame only, counts as this old.
-// Origin unknown: kept from the first version; guard: mean F of bench-quality.
-inline constexpr std::uint8_t kRelearn = 4;
 
 class BackgroundLight {
  public:

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "vision/background/background_kernels.h"
-#include "vision/background/components.h"
+#include "vision/components/components.h"
 #include "vision/background/mosaic.h"
 #include "vision/background/motion_blur.h"
 #include "vision/geometry/warp.h"

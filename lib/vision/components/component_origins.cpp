@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/background/component_origins.h"
+#include "vision/components/component_origins.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/background/components.h"
+#include "vision/components/components.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
 
-#include "vision/background/background_light.h"
-#include "vision/background/component_sides.h"
-#include "vision/background/fragment_joining.h"
+#include "vision/components/component_sides.h"
+#include "vision/components/fragment_joining.h"
 
 namespace cerberus::vision {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/background/resting_ghosts.h"
+#include "vision/components/resting_ghosts.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/background/fragment_joining.h"
+#include "vision/components/fragment_joining.h"
 
 #include <algorithm>
 #include <cmath>
