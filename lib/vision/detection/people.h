@@ -54,9 +54,9 @@ class PeopleFinder {
     // Of the logarithm of the height: adults differ by 5 %, the line is as uncertain. measured: MOTA on PETS09-S2L1 71.8
     // with .08 and 73.5 with .11, where a clock over the picture costs 2 % of the recall.
     double spread = 0.08;
-    // Where the height is not known the blob's is expected, and smaller ones are tried by steps. measured: prior and step
-    // of the trial on TUD-Campus.
-    double unknown_spread = 0.3;  // of the logarithm of the height
+    // Where the height is not known the blob's is expected, and smaller ones are tried by steps. measured: the step of the
+    // trial on TUD-Campus. swept: docs/quality.md, .3 to .45.
+    double unknown_spread = 0.4;  // of the logarithm of the height
     double unknown_step = 0.08;   // of the blob's height
     double other_height = 0.08;  // a height that is tried as well is by so much lower or higher than expected
     // Nats of a squared height: less is the rest of a person already found. swept: docs/quality.md, .08 to .12.
