@@ -130,8 +130,8 @@ START_TEST(a_track_without_region_is_coasted_and_lost_after_its_time) {
   ck_assert(coasted(9, 0) == TrackPhase::coasted);
   ck_assert(coasted(9, 0.95) == TrackPhase::coasted);  // .99 s
   ck_assert(coasted(9, 0.97) == TrackPhase::lost);     // 1.01 s
-  ck_assert(coasted(0.8, 0.75) == TrackPhase::coasted);
-  ck_assert(coasted(0.8, 0.77) == TrackPhase::lost);  // .81 s, longer than it was seen
+  ck_assert(coasted(0.8, 0.35) == TrackPhase::coasted);
+  ck_assert(coasted(0.8, 0.37) == TrackPhase::lost);  // .41 s, half of .8
   ck_assert(coasted(9, 0.25, 5) == TrackPhase::coasted);
   ck_assert(coasted(9, 0.27, 5) == TrackPhase::lost);  // at the edge, up to .1 S: .3 of it
   ck_assert(coasted(9, 0.27, 11) == TrackPhase::coasted);

@@ -39,8 +39,7 @@ class LifeCycle {
     double hit_share = 0.6;        // of the frames in which a tentative track has a region
     double tentative_coast = 0.5;  // of confirm-time that it is kept without
     // Coasting.
-    // Of the time for which the object was seen. swept: MOTA on TUD-Stadtmitte is .13 with .5, .18 with 1, the others equal.
-    double coast_share = 1.0;
+    double coast_share = 0.5;   // of the time for which the object was seen
     double border_coast = 0.3;  // of the coast time, at the picture's edge
     double proven = 3;     // times confirm-time for which a coasted track was seen before it is published
     double certain = 0.4;  // of the box's width: standard deviation up to which a coasted track is published
