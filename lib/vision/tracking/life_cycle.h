@@ -44,8 +44,8 @@ class LifeCycle {
     double proven = 3;     // times confirm-time for which a coasted track was seen before it is published
     double certain = 0.4;  // of the box's width: standard deviation up to which a coasted track is published
     // Of the largest height that it had: what the picture's left or right edge cuts to this width is mostly outside, and
-    // unpublished. derived: half of the width of a walking person. swept: MOTA on TUD-Campus is .22 without, .27 from .14 to
-    // .25; on PETS09-S2L1 .73 and .74.
+    // unpublished. derived: half of the width of a walking person. swept: MOTA on TUD-Campus is .21 without, .26 to .27 from .14 to
+    // .22 (docs/quality.md).
     double sliver = 0.18;
     double occluded_coast = 0.3;  // s for which an occluded track is published
     // Stopping: the object was well seen, slower and slower.
