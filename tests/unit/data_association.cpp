@@ -39,9 +39,9 @@ struct Scene {
   DataAssociation association;
   RegionAppearances appearances;
 
-  std::span<const Match> associate() {
+  std::span<const Match> associate(double maximum_speed = 0) {
     appearances.update({}, regions, {}, kFrame);
-    association.associate(tracks, regions, appearances, {kFrame, 0.1, 0});
+    association.associate(tracks, regions, appearances, {kFrame, 0.1, maximum_speed});
     return association.matches();
   }
 };
@@ -188,6 +188,29 @@ START_TEST(a_region_is_crowded_where_another_track_covers_a_fifth_of_it) {
 }
 END_TEST
 
+// Its frame is the second one since it was first seen; 2 S are 80 pixels.
+START_TEST(an_object_that_leaps_is_followed_where_nothing_else_can_be_it) {
+  const auto leaps = [](const std::vector<TrackHypothesis>& tracks, const std::vector<Region>& regions,
+                        double maximum_speed = 0) {
+    Scene s{tracks, regions, {}, {}};
+    const Match match = s.associate(maximum_speed)[0];
+    ck_assert_int_eq(match.leapt, match.region >= 0);
+    return match.leapt;
+  };
+  const TrackHypothesis seen_once = track({100, 100, 40, 30}, Tentative{1, 2});
+  ck_assert(leaps({seen_once}, {region(175, 100, 40, 30)}));
+  ck_assert(!leaps({seen_once}, {region(185, 100, 40, 30)}));
+  ck_assert(!leaps({seen_once}, {region(175, 100, 70, 30)}));  // another extent
+  ck_assert(!leaps({seen_once}, {region(175, 100, 40, 60)}));
+  ck_assert(!leaps({seen_once}, {region(175, 100, 40, 30), region(175, 300, 40, 30)}));
+  ck_assert(!leaps({seen_once, track({250, 100, 40, 30}, Tentative{1, 2})}, {region(175, 100, 40, 30)}));
+  ck_assert(!leaps({track({100, 100, 40, 30}, Tentative{1, 3})}, {region(175, 100, 40, 30)}));
+  ck_assert(!leaps({track({100, 100, 40, 30})}, {region(175, 100, 40, 30)}));
+  ck_assert(leaps({seen_once}, {region(175, 100, 40, 30)}, 600));  // 75 pixels in .1 s, half of 40 are slack
+  ck_assert(!leaps({seen_once}, {region(175, 100, 40, 30)}, 500));
+}
+END_TEST
+
 START_TEST(as_many_pairs_as_reserved_take_no_memory) {
   constexpr std::size_t kTracks = 8, kRegions = 16;
   Scene s;
@@ -218,5 +241,6 @@ int main() {
        fragments_one_above_the_other_merge_into_the_older_one,
        others_are_expected_only_in_a_larger_region_that_holds_half_of_them,
        a_region_is_crowded_where_another_track_covers_a_fifth_of_it,
+       an_object_that_leaps_is_followed_where_nothing_else_can_be_it,
        as_many_pairs_as_reserved_take_no_memory});
 }

@@ -244,6 +244,31 @@ START_TEST(before_a_moving_camera_a_track_s_velocity_is_less_certain) {
 }
 END_TEST
 
+// 2.5 S/s are 250 pixels a second: beyond it the deviation is in proportion to the speed, the variance to its square.
+START_TEST(the_velocity_of_what_is_faster_than_a_runner_is_less_certain) {
+  const auto more = [](double speed) {
+    TrackHypothesis t = walker(200, 240);
+    t.x.velocity = speed, t.y.velocity = 0;
+    const double known = t.x.vv;
+    t.predict(0.1);
+    return t.x.vv - known;
+  };
+  ck_assert_double_eq_tol(more(250), more(30), 1e-9);
+  ck_assert_double_eq_tol(more(1000), 16 * more(30), 1e-9 * more(1000));
+}
+END_TEST
+
+// The rounded overlap of a box with itself may be more than 1.
+START_TEST(a_region_that_fits_exactly_is_at_no_distance) {
+  for (int k = 0; k < 1000; ++k) {
+    const Region seen{{700 + k / 7.0, 45 + k / 11.0, 10 + k / 70.0, 37 + k / 60.0}, 300, 0.9, 1};
+    const TrackHypothesis t = TrackHypothesis::first_seen(seen);
+    ck_assert_double_ge(t.distance(t.box(), kFrame), 0);
+    ck_assert_double_le(t.distance(t.box(), kFrame), 1e-6);
+  }
+}
+END_TEST
+
 START_TEST(each_transition_leads_to_its_state) {
   const Box seen{180, 190, 40, 100};
   const CameraOrientation camera{Lens(60 * kDegree, kFrame), 0, 0};
@@ -285,7 +310,9 @@ int main() {
   return cerberus::tests::run_suite(
       "track_hypothesis",
       {a_moving_camera_s_track_shrinks_in_its_second_frame_of_a_twentieth_second_at_least,
-       before_a_moving_camera_a_track_s_velocity_is_less_certain, each_transition_leads_to_its_state,
+       before_a_moving_camera_a_track_s_velocity_is_less_certain,
+       the_velocity_of_what_is_faster_than_a_runner_is_less_certain,
+       a_region_that_fits_exactly_is_at_no_distance, each_transition_leads_to_its_state,
        a_zoom_scales_all_of_its_lengths, a_camera_that_rolls_turns_the_velocity,
        a_fragment_replaces_the_track_if_it_leaves_its_place_in_the_scene,
        towards_the_picture_s_middle_an_off_screen_track_shrinks_as_a_pinhole_projects_it,

@@ -14,6 +14,11 @@ Box bounding(const Box& a, const Box& b) {
   return {x, y, std::max(a.right(), b.right()) - x, std::max(a.bottom(), b.bottom()) - y};
 }
 
+// From the centre where the track is expected, frame pixels.
+double distance_between(const TrackHypothesis& t, const Box& box) {
+  return std::hypot(box.x + box.width / 2 - t.x.position, box.y + box.height / 2 - t.y.position);
+}
+
 }  // namespace
 
 DataAssociation::Turn DataAssociation::turn_of(const TrackHypothesis& t) {
@@ -56,6 +61,12 @@ bool DataAssociation::is_part(const Box& part, const Box& whole) const {
          overlap_area(part, whole) > parameters_.part_inside * part.area();
 }
 
+// Is an object that has come so far, frame pixels, beyond maximum-speed?
+bool DataAssociation::too_fast(const TrackHypothesis& t, double moved) const {
+  return frame_.maximum_speed > 0 &&
+         moved > frame_.maximum_speed * (frame_.seconds + t.unseen) + parameters_.speed_slack * t.size();
+}
+
 double DataAssociation::pair_cost(const TrackHypothesis& t, std::size_t j) const {
   const Parameters& q = parameters_;
   const Region& region = regions_[j];
@@ -64,12 +75,7 @@ double DataAssociation::pair_cost(const TrackHypothesis& t, std::size_t j) const
   const double distance = t.distance(region.box, frame_.size);
   if (distance < 0) return Assignment::kForbidden;
   if (returns && region.box.area() > q.returned_area * t.box().area()) return Assignment::kForbidden;
-  if (frame_.maximum_speed > 0) {
-    const double moved = std::hypot(region.box.x + region.box.width / 2 - t.x.position,
-                                    region.box.y + region.box.height / 2 - t.y.position);
-    if (moved > frame_.maximum_speed * (frame_.seconds + t.unseen) + q.speed_slack * t.size())
-      return Assignment::kForbidden;
-  }
+  if (too_fast(t, distance_between(t, region.box))) return Assignment::kForbidden;
   const double appearance = appearance_cost(t, j);
   if (appearance < 0) return Assignment::kForbidden;
   return std::min(distance + appearance, q.worst);
@@ -123,6 +129,37 @@ void DataAssociation::assign(Turn turn) {
     matches_[rows_[r]].region = partner[r];
     owner_[partner[r]] = rows_[r];
   }
+}
+
+// An object may be so fast that its second region lies beyond the gate, as its velocity is not known yet. Where of the
+// objects that the last frame showed for the first time one is left over, and one region of its extent, they are one.
+void DataAssociation::follow_leap() {
+  const auto is_left = [&](std::size_t i) {
+    const auto* data = std::get_if<Tentative>(&tracks_[i].life);
+    return data && data->frames == 2 && matches_[i].region < 0;
+  };
+  std::size_t track = tracks_.size(), region = regions_.size();
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (!is_left(i)) continue;
+    if (track < tracks_.size()) return;
+    track = i;
+  }
+  for (std::size_t j = 0; j < regions_.size(); ++j) {
+    if (!is_new(j)) continue;
+    if (region < regions_.size()) return;
+    region = j;
+  }
+  if (track == tracks_.size() || region == regions_.size()) return;
+  const TrackHypothesis& t = tracks_[track];
+  const Box expected = t.box(), &seen = regions_[region].box;
+  const double moved = distance_between(t, seen);
+  if (moved > parameters_.leap * t.size() || too_fast(t, moved) ||
+      !compare_extents(expected.x, expected.right(), seen.x, seen.right(), *t.parameters).same_extent ||
+      !compare_extents(expected.y, expected.bottom(), seen.y, seen.bottom(), *t.parameters).same_extent)
+    return;
+  matches_[track].region = static_cast<int>(region);
+  matches_[track].leapt = true;
+  owner_[region] = static_cast<int>(track);
 }
 
 // Regions left over that lie where an object is expected are fragments of it: they complete its region or, where it has
@@ -265,6 +302,7 @@ void DataAssociation::associate(std::span<const TrackHypothesis> tracks, std::sp
   gather_fragments();
   assign(Turn::off_screen);
   assign(Turn::tentative);
+  follow_leap();
   share_regions();
   merge_fragments();
   tracks_ = {};

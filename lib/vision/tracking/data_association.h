@@ -27,6 +27,10 @@ class DataAssociation {
     double returned_area = 2;  // times the area when it left that a returning object has at most
     double speed_slack = 0.5;  // S beyond maximum-speed. derived: a region's centre jumps by half an object
 
+    // S from the first to the second region of an object that nothing else can be. derived: what is as long as a tenth of
+    // the picture crosses it in five frames.
+    double leap = 2;
+
     // Appearance distance. measured on vtest.avi: the same person again .16 in the median and .28 in one of ten; two
     // persons .36 in the median.
     double usual_change = 0.15;    // costs nothing
@@ -105,6 +109,8 @@ class DataAssociation {
   double pair_cost(const TrackHypothesis& track, std::size_t region) const;
   double appearance_cost(const TrackHypothesis& track, std::size_t region) const;
   bool may_hold(const Region& region, const TrackHypothesis& track) const;
+  bool too_fast(const TrackHypothesis& track, double moved) const;
+  void follow_leap();
   void gather_fragments();
   void share_regions();
   bool occludes(const TrackHypothesis& front, const TrackHypothesis& track, const Box& region) const;

@@ -85,8 +85,9 @@ bool TrackHypothesis::predict(double seconds, bool camera_moves) {
       a->pp = std::min(a->pp + square(q.stopped_wander * s) * seconds,
                        std::max(square(q.stopped_uncertainty * s), a->pp));
   } else {
-    for (MovingValue* a : {&x, &y})
-      a->predict(seconds, (camera_moves ? q.panned_acceleration : q.acceleration) * s * s);
+    const double acceleration = camera_moves ? q.panned_acceleration : q.acceleration;
+    const double faster = std::max(1.0, speed() / (q.fast * s));
+    for (MovingValue* a : {&x, &y}) a->predict(seconds, acceleration * square(faster * s));
   }
   for (SlowValue* e : {&w, &h}) e->predict(seconds, q.size_wander);
   age += seconds;
@@ -192,7 +193,8 @@ double TrackHypothesis::distance(const Box& seen, Size frame) const {
   const double sizes = std::abs(std::log(seen.width / b.width)) + std::abs(std::log(seen.height / b.height));
   if (sizes > 2 * std::log(q.largest_ratio)) return -1;
   const Point c = centre(seen);
-  return 1 - intersection_over_union(b, seen) + q.size_cost * sizes +
+  // Rounding makes the overlap of equal boxes more than 1.
+  return std::max(0.0, 1 - intersection_over_union(b, seen)) + q.size_cost * sizes +
          std::hypot(c.x - b.x - b.width / 2, c.y - b.y - b.height / 2) / s + q.gate_cost * std::sqrt(d2);
 }
 

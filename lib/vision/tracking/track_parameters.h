@@ -16,6 +16,9 @@ struct TrackParameters {
   // swept on otb_Skiing (.54 of the frames with 1, .62 with 2, .65 from 3 on) and davis_tennis (MOTA .80 instead of .83
   // from 5 on). Guard: bench-moving_window.
   double panned_acceleration = 3.0;
+  // S/s; of what is faster the velocity may change by as much more: its first one is known worse, and each frame shows more
+  // of its way. derived: a runner.
+  double fast = 2.5;
   double birth_speed = 3.0;      // S/s, standard deviation of the unknown first velocity
   double position_noise = 0.05;  // S, standard deviation of a region's centre
   double grain = 1.0 / 320;      // of the frame's width. derived: a pixel of the analysed picture, 320 wide
@@ -61,9 +64,9 @@ struct TrackParameters {
   double jump_speed = 2.5;  // S/s, beside a runner's speed
 
   // A region of another extent replaces the track's: after so many seconds ...
-  double whole_misfit = 0.2;  // s, of a person-like region, where the track's was one as well
+  double whole_misfit = 0.2;    // s, of a person-like region, where the track's was one as well
   double growing_misfit = 0.2;  // s, of a larger region that was reached in steps
-  double jumped_misfit = 0.6;  // s, of a larger region that was reached by a jump
+  double jumped_misfit = 0.6;   // s, of a larger region that was reached by a jump
   // s, of a smaller region: as for one that grows. measured: with .5 the skier of otb_Skiing is found in .37 of the frames
   // instead of .44; MOTA on TUD-Campus and TUD-Stadtmitte is .01 higher.
   double shrinking_misfit = 0.2;
