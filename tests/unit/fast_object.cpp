@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The complete chain on an ellipse that crosses the picture within .6 s: its box follows without lag.
-#include <check.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
