@@ -193,7 +193,9 @@ START_TEST(an_object_that_leaps_is_followed_where_nothing_else_can_be_it) {
   const auto leaps = [](const std::vector<TrackHypothesis>& tracks, const std::vector<Region>& regions,
                         double maximum_speed = 0) {
     Scene s{tracks, regions, {}, {}};
-    return s.associate(maximum_speed)[0].region >= 0;
+    const Match match = s.associate(maximum_speed)[0];
+    ck_assert_int_eq(match.leapt, match.region >= 0);
+    return match.leapt;
   };
   const TrackHypothesis seen_once = track({100, 100, 40, 30}, Tentative{1, 2});
   ck_assert(leaps({seen_once}, {region(175, 100, 40, 30)}));

@@ -17,7 +17,7 @@ constexpr Size kSize{1280, 720};
 constexpr double kWidth = 60, kHeight = 40;  // of the ellipse, pixels
 constexpr double kSpeed = 2000;              // pixels a second, to the right
 constexpr double kMostOff = kWidth / 10;     // pixels between the middles of ellipse and box
-constexpr int kAlone = 25;                   // frames of the scene before it comes
+constexpr int kAlone = 100;                  // frames of the scene before it comes
 constexpr int kBeyond = 600;                 // columns of the scene left and right of the first view
 
 // The scene is wider than the picture, so that a camera can turn along it.
@@ -55,6 +55,7 @@ struct Followed {
 // turn: columns of the wall by which the camera goes on from frame to frame.
 Followed follow(const Wall& wall, double rate, int turn) {
   Chain chain;
+  chain.set_burnt_in(true);  // as motiondetect has it
   Followed followed;
   std::vector<std::uint8_t> picture(static_cast<std::size_t>(kSize.area()));
   const double step = kSpeed / rate;

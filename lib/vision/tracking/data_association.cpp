@@ -158,6 +158,7 @@ void DataAssociation::follow_leap() {
       !compare_extents(expected.y, expected.bottom(), seen.y, seen.bottom(), *t.parameters).same_extent)
     return;
   matches_[track].region = static_cast<int>(region);
+  matches_[track].leapt = true;
   owner_[region] = static_cast<int>(track);
 }
 

@@ -21,6 +21,14 @@ struct MovingValue {
     vv += intensity * t;
   }
 
+  // The velocity of the last t seconds may have been off by so much.
+  void doubt_velocity(double deviation, double t) {
+    const double more = deviation * deviation;
+    pp += more * t * t;
+    pv += more * t;
+    vv += more;
+  }
+
   // A measurement of the position that is `residual` away from the predicted one and has this variance.
   void correct(double residual, double variance) {
     const double s = pp + variance;

@@ -27,7 +27,7 @@ void TrackHypothesis::correct(const Region& region, bool alone, double seconds, 
   } else if (found) {
     move_to(*found, seconds);
   } else {
-    move_by(how, frame);
+    move_by(how, seconds, frame);
     if (alone && how.fits)
       refine_extent(seen, how, seconds, frame);
     else if (alone && how.smaller)
@@ -152,11 +152,15 @@ void TrackHypothesis::move_to(const Point& found, double seconds) {
 }
 
 // By the residual. A smaller region within the expected box is no distance travelled of a tentative track.
-void TrackHypothesis::move_by(const Comparison& how, Size frame) {
+void TrackHypothesis::move_by(const Comparison& how, double seconds, Size frame) {
   const TrackParameters& q = *parameters;
   const double noise = square(q.position_noise * size()) + square(q.grain * frame.width);
   const double variance = how.fits && !match.occluded ? noise : q.blob_noise * noise;
   const Point was{x.position, y.position};
+  if (match.leapt) {
+    x.doubt_velocity(how.x.distance / seconds, seconds);
+    y.doubt_velocity(how.y.distance / seconds, seconds);
+  }
   x.correct(how.x.distance, variance);
   y.correct(how.y.distance, variance);
   if (!is(TrackPhase::tentative)) return;

@@ -69,6 +69,7 @@ Residual compare_extents(double expected_from, double expected_to, double from, 
 struct Match {
   int region = -1;        // -1: none
   bool occluded = false;  // behind the track that owns the region
+  bool leapt = false;     // beyond the gate: the object is faster than the first velocity allows
   bool reshaped = false;  // the track's extent was that of a group or a fragment: the region's replaces it
   bool merged = false;    // the track is a fragment of an older one in the same region
   int sharers = 0;        // tracks in the region that are neither occluded nor merged
@@ -216,7 +217,7 @@ struct TrackHypothesis {
   bool jumps(const Box& seen, double seconds) const;
   void replace_extent(const Box& seen, bool cut);
   void move_to(const Point& found, double seconds);
-  void move_by(const Comparison& how, Size frame);
+  void move_by(const Comparison& how, double seconds, Size frame);
   void refine_extent(const Box& seen, const Comparison& how, double seconds, Size frame);
   void resize(SlowValue& extent, double seen, bool is_cut, double seconds);
   void follow_ends(const Box& seen, double seconds, Size frame);

@@ -16,9 +16,10 @@ struct TrackParameters {
   // swept on otb_Skiing (.54 of the frames with 1, .62 with 2, .65 from 3 on) and davis_tennis (MOTA .80 instead of .83
   // from 5 on). Guard: bench-moving_window.
   double panned_acceleration = 3.0;
-  // S/s; of what is faster the velocity may change by as much more: its first one is known worse, and each frame shows more
-  // of its way. derived: a runner.
-  double fast = 2.5;
+  // S/s. What is faster than this may change its velocity by as much more: its first velocity is known worse, and each
+  // frame shows more of its way. derived: somebody who jogs, 12 km/h. swept: docs/quality.md, 1.5 to 4. Guard: unit
+  // fast_object.
+  double fast = 2.0;
   double birth_speed = 3.0;      // S/s, standard deviation of the unknown first velocity
   double position_noise = 0.05;  // S, standard deviation of a region's centre
   double grain = 1.0 / 320;      // of the frame's width. derived: a pixel of the analysed picture, 320 wide
