@@ -57,6 +57,16 @@ void SensorInputs::begin_video() {
   for (SensorSource* source : sources_) source->spoken.reset();
 }
 
+void SensorInputs::begin_seek() {
+  const std::lock_guard guard(lock_);
+  ++seeks_;
+}
+
+void SensorInputs::end_seek() {
+  const std::lock_guard guard(lock_);
+  --seeks_;
+}
+
 bool SensorInputs::frame_came(Time time, Time max_wait, std::vector<SilentSource>& silent) {
   std::unique_lock guard(lock_);
   video_ = time;
@@ -100,7 +110,7 @@ void SensorInputs::read(Time sensor_time, SensorSnapshot& snapshot) {
     }
     ++place;
     Reading reading = source->history.at(sensor_time);
-    source->history.forget_before(sensor_time);
+    if (seeks_ == 0) source->history.forget_before(sensor_time);
     if (!reading.array) {
       reading = unknown_sensor();
       snapshot.geometry_known = false;

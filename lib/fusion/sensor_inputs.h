@@ -48,6 +48,10 @@ class SensorInputs {
   void end_video() { set(video_ended_, true); }
   void set_flushing(bool flushing) { set(flushing_, flushing); }
   bool flushing();
+  // A seek goes upstream, to the groups first: until it has ended a group may have the readings of its new time while
+  // frames of the old one still come, and no reading is forgotten. Each begin has its end; seeks may overlap.
+  void begin_seek();
+  void end_seek();
 
   // ---- the groups' threads
   std::mutex& lock() { return lock_; }
@@ -70,7 +74,7 @@ class SensorInputs {
 
  protected:
   // Puts the readings at `sensor_time` in place of the snapshot's sensors, and forgets what no later frame can ask
-  // for. With the lock held.
+  // for, unless a seek is in progress. With the lock held.
   void read(Time sensor_time, SensorSnapshot& snapshot);
   void forget();  // all but the groups' places; with the lock held
 
@@ -82,6 +86,7 @@ class SensorInputs {
   Time video_{};                  // the newest frame
   bool flushing_ = true;
   bool video_ended_ = false;
+  int seeks_ = 0;  // in progress
 };
 
 }  // namespace cerberus::fusion

@@ -364,13 +364,17 @@ void listen(Private& priv, GstEvent* event) {
 
 gboolean src_event(GstPad* pad, GstObject* parent, GstEvent* event) {
   auto* self = cerberus_pir_fusion_self(parent);
+  const GstEventType type = GST_EVENT_TYPE(event);
+  auto& inputs = self->priv->inputs;
+  if (type == GST_EVENT_SEEK) inputs.begin_seek();
   guarded(self, [&] {
-    const GstEventType type = GST_EVENT_TYPE(event);
     if (type == GST_EVENT_CUSTOM_UPSTREAM) listen(*self->priv, event);
     // First to the PIR pads: after a flushing seek no frame must meet readings of the time before.
     if (type == GST_EVENT_CUSTOM_UPSTREAM || type == GST_EVENT_SEEK) push_to_pirs(self, event);
   });
-  return gst_pad_event_default(pad, parent, event);
+  const gboolean handled = gst_pad_event_default(pad, parent, event);
+  if (type == GST_EVENT_SEEK) inputs.end_seek();
+  return handled;
 }
 
 GstPad* request_new_pad(GstElement* element, GstPadTemplate* pad_template, const gchar* name,

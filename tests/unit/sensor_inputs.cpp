@@ -119,6 +119,24 @@ START_TEST(a_recording_waits_for_the_video_ten_seconds_ahead) {
 }
 END_TEST
 
+// The frame of 30 s was on its way when a seek back to 1 s had reached the group.
+START_TEST(a_frame_from_before_a_seek_takes_no_reading_from_those_behind_it) {
+  for (const int seeks : {0, 1, 2}) {
+    Inputs inputs;
+    Group one(0, 1);
+    inputs.add(one);
+    for (int k = 0; k < seeks; ++k) inputs.begin_seek();
+    one.append(1s, 1), one.append(3s, 0);
+    ck_assert_int_eq(inputs.at(30s).sensors[0], 0);
+    ck_assert_int_eq(inputs.at(2s).sensors[0], seeks > 0 ? 1 : kInvalid);
+    if (seeks == 0) continue;
+    inputs.end_seek();
+    ck_assert_int_eq(inputs.at(30s).sensors[0], 0);
+    ck_assert_int_eq(inputs.at(2s).sensors[0], seeks > 1 ? 1 : kInvalid);
+  }
+}
+END_TEST
+
 START_TEST(places_without_a_group_count_as_one_invalid_sensor) {
   Inputs inputs;
   Group one(1, 2), four(4, 1);
@@ -144,5 +162,6 @@ int main() {
                         a_group_that_stays_silent_is_given_up_until_it_speaks,
                         live_patience_begins_with_the_first_frame_and_spares_recordings,
                         a_flush_ends_the_wait_of_a_frame, a_recording_waits_for_the_video_ten_seconds_ahead,
+                        a_frame_from_before_a_seek_takes_no_reading_from_those_behind_it,
                         places_without_a_group_count_as_one_invalid_sensor});
 }
