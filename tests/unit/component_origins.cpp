@@ -82,6 +82,10 @@ START_TEST(absorbed_pixels_and_those_that_fit_again_lose_their_origin) {
   f.expect(run(10, 40), 10, 10);
   f.see(run(10, 40), Origin::outside);
   f.expect(run(10, 40), 30, 10);
+  f.gone.fill_bytes(0);
+  set_bits(f.gone.view().row(2), 35, 40);
+  f.origins.forget(f.gone.view());  // a part of those that began inside
+  f.expect(run(10, 40), 25, 5);
 }
 END_TEST
 

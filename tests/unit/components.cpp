@@ -156,6 +156,32 @@ START_TEST(what_rests_between_edges_of_the_scene_is_no_object) {
 }
 END_TEST
 
+// A side at the picture's edge cannot be compared: one that goes on is not enough.
+START_TEST(what_rests_at_the_picture_s_edge_beside_one_edge_of_the_scene_is_an_object) {
+  constexpr Rect kStrip{0, 100, 8, 40};
+  Scene s(200);
+  for (auto* picture : {&s.frame, &s.background}) Scene::paint(*picture, {0, 60, 8, 120}, 200);
+  Scene::paint(s.background, kStrip, 100);
+  s.differs(kStrip, 100);
+  s.classify();
+  ck_assert_int_eq(count(s.mask, kStrip), all(kStrip));
+}
+END_TEST
+
+// A table whose right leg stands on a post: only the right one of its two outer sides goes on.
+START_TEST(only_the_outer_sides_of_what_rests_may_be_edges_of_the_scene) {
+  constexpr Rect kTop{150, 100, 28, 4}, kLegs[]{{150, 104, 8, 36}, {170, 104, 8, 36}};
+  Scene s(200);
+  for (const Rect& r : {kTop, kLegs[0], kLegs[1]}) {
+    Scene::paint(s.frame, r, 200);
+    s.differs(r, 100);
+  }
+  for (auto* picture : {&s.frame, &s.background}) Scene::paint(*picture, {170, 140, 8, 20}, 200);
+  s.classify();
+  for (const Rect& r : {kTop, kLegs[0], kLegs[1]}) ck_assert_int_eq(count(s.mask, r), all(r));
+}
+END_TEST
+
 START_TEST(a_ghost_is_absorbed_at_once) {
   for (const bool young : {false, true}) {
     Scene s(young ? 10 : 255);
@@ -368,7 +394,6 @@ START_TEST(a_fragment_near_a_large_component_is_dropped_over_a_young_background)
 }
 END_TEST
 
-// Merged with its neighbour it would add a strip of background between the corners of two boxes.
 // A person of whom the picture's edge shows little, beside another one: both sides are a person's, or cannot be seen.
 START_TEST(a_small_object_near_a_large_one_is_no_fragment_of_it) {
   for (const int left : {0, 60}) {
@@ -385,6 +410,7 @@ START_TEST(a_small_object_near_a_large_one_is_no_fragment_of_it) {
 }
 END_TEST
 
+// Merged with its neighbour it would add a strip of background between the corners of two boxes.
 START_TEST(a_fragment_beside_a_large_component_is_dropped_not_merged) {
   constexpr Rect kPiece{140, 140, 12, 20}, kTiny{140, 100, 7, 7};  // 10 away: less than a fifth of the height
   for (const Rect& piece : {kPiece, kTiny}) {
@@ -593,6 +619,8 @@ int main() {
                      in_clutter_no_neighbours_are_merged,
                      an_object_that_stopped_stays_foreground_for_ten_seconds,
                      what_rests_between_edges_of_the_scene_is_no_object,
+                     what_rests_at_the_picture_s_edge_beside_one_edge_of_the_scene_is_an_object,
+                     only_the_outer_sides_of_what_rests_may_be_edges_of_the_scene,
                      a_ghost_is_absorbed_at_once,
                      a_ghost_that_somebody_passes_is_absorbed_as_well,
                      over_a_young_background_a_component_needs_motion,

@@ -46,4 +46,8 @@ void ComponentOrigins::step(BitView differs, BitView gone) {
   intersect(inside_.view(), differed_.view(), inside_.view());
 }
 
+void ComponentOrigins::forget(BitView gone) {
+  step(differed_.view(), gone);
+}
+
 }  // namespace cerberus::vision

@@ -30,6 +30,8 @@ class ComponentOrigins {
   void record(const Run& run, Origin origin);
   // Ends the frame. differs: all recorded pixels; gone: those that do not differ any more from now on.
   void step(BitView differs, BitView gone);
+  // More pixels that do not differ any more.
+  void forget(BitView gone);
 
   std::size_t bytes() const { return differed_.bytes() + inside_.bytes(); }
 

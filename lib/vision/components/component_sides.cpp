@@ -2,7 +2,6 @@
 #include "vision/components/component_sides.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 
 namespace cerberus::vision {
@@ -13,8 +12,8 @@ constexpr struct Parameters {
   int visible_difference = 12;  // grey levels by which a pixel certainly differs from the background
   double uneven = 0.25;         // share of a gap's pixels that may differ so much from their neighbours
   // Times as much contrast in the frame as in the background, and grey levels a pixel more, at the side of an object. The
-  // ratio is that of components.cpp. swept: with a margin of 2 unit-steady finds strips that people leave; with 6 the
-  // recall on TUD-Stadtmitte is .24 instead of .25.
+  // ratio is that of components.cpp. swept when the recall on TUD-Stadtmitte was .25: with a margin of 2 unit-steady finds
+  // strips that people leave; with 6 that recall was .24.
   double side_ratio = 1.3, side_margin = 4;
   // Rows beyond a component in which its sides may go on: of its height, and at least.
   double reach = 0.25;
@@ -22,11 +21,37 @@ constexpr struct Parameters {
   double goes_on = 0.5;  // of a side's contrast that an edge which goes on has
 } kParameters;
 
-// The contrast across column x, grey levels; the component lies to the left of a right side.
-int across(GrayView picture, int x, int y, bool right) {
-  const int out = right ? x + 1 : x - 2, in = right ? x - 2 : x + 1;
-  if (std::min(out, in) < 0 || std::max(out, in) >= picture.width) return 0;
-  return std::abs(picture.at(out, y) - picture.at(in, y));
+// Contrast across a side, in the rows in which it can be compared.
+struct Contrast {
+  int sum = 0, rows = 0;  // grey levels
+
+  // Across column x; the component lies to the left of a right side.
+  static bool is_comparable(GrayView picture, int x) { return x >= 2 && x + 2 <= picture.width; }
+  static int across(GrayView picture, int x, int y, bool right) {
+    const int out = right ? x + 1 : x - 2, in = right ? x - 2 : x + 1;
+    return std::abs(picture.at(out, y) - picture.at(in, y));
+  }
+  void add(GrayView picture, int x, int y, bool right) {
+    if (!is_comparable(picture, x)) return;
+    sum += across(picture, x, y, right);
+    ++rows;
+  }
+  double mean() const { return rows > 0 ? static_cast<double>(sum) / rows : 0; }
+};
+
+// Calls look(row, column) for each of these rows that the component has: the first column beyond its outermost run on the
+// right, or the first one of that on the left.
+template <typename Look>
+void for_outermost(std::span<const Run> runs, std::size_t component, bool right, const Rows& rows,
+                   const Look& look) {
+  int row = -1, side = 0;  // of the runs so far; runs are in reading order
+  for (const Run& r : runs) {
+    if (r.component != component || r.row < rows.top || r.row >= rows.bottom) continue;
+    if (r.row != row && row >= 0) look(row, side);
+    if (r.row != row || right) side = right ? r.end : r.first;
+    row = r.row;
+  }
+  if (row >= 0) look(row, side);
 }
 
 }  // namespace
@@ -44,57 +69,33 @@ bool is_even(GrayView frame, const Gap& gap, int moved) {
 
 bool is_side_of_object(GrayView frame, GrayView background, std::span<const Run> runs, std::size_t component,
                        bool right, const Rows& rows) {
-  int in_frame = 0, in_background = 0, places = 0;
-  const auto look = [&](int y, int side) {  // side: the first column beyond the component, or its first one
-    if (side < 2 || side + 2 > frame.width) return;
-    in_frame += across(frame, side, y, right);
-    in_background += across(background, side, y, right);
-    ++places;
-  };
-  int row = -1, side = 0;  // of the runs so far; runs are in reading order
-  for (const Run& r : runs) {
-    if (r.component != component || r.row < rows.top || r.row >= rows.bottom) continue;
-    if (r.row != row && row >= 0) look(row, side);
-    if (r.row != row || right) side = right ? r.end : r.first;
-    row = r.row;
-  }
-  if (row >= 0) look(row, side);
-  return in_frame >= kParameters.side_ratio * in_background + kParameters.side_margin * places;
+  Contrast in_frame, in_background;
+  for_outermost(runs, component, right, rows, [&](int y, int x) {
+    in_frame.add(frame, x, y, right);
+    in_background.add(background, x, y, right);
+  });
+  return in_frame.sum >= kParameters.side_ratio * in_background.sum + kParameters.side_margin * in_frame.rows;
 }
 
 bool sides_go_on(GrayView frame, BitView mask, std::span<const Run> runs, std::size_t component) {
   const Parameters& p = kParameters;
-  struct Side {
-    int contrast = 0, top = 0, bottom = 0;  // sum of grey levels; columns where it begins and ends
-  };
-  std::array<Side, 2> sides;
-  int top = -1, bottom = 0;
-  for (const Run& r : runs) {
-    if (r.component != component) continue;
-    for (const bool right : {false, true}) {
-      Side& side = sides[right];
-      side.bottom = right ? r.end : r.first;
-      if (top < 0) side.top = side.bottom;
-      side.contrast += across(frame, side.bottom, r.row, right);
-    }
-    if (top < 0) top = r.row;
-    bottom = r.row + 1;
-  }
-  const int reach = std::max(p.least_reach, static_cast<int>(p.reach * (bottom - top)));
-  const auto contrast = [&](int x, int from, int to, bool right) {
-    int sum = 0, rows = 0;
-    for (int y = std::max(from, 0); y < std::min(to, frame.height); ++y) {
-      if (x >= frame.width || mask.row(y)[x / 64] >> (x % 64) & 1) continue;
-      sum += across(frame, x, y, right);
-      ++rows;
-    }
-    return rows > 0 ? static_cast<double>(sum) / rows : 0.0;
-  };
   const auto goes_on = [&](bool right) {
-    const Side& side = sides[right];
-    const double least = p.goes_on * side.contrast / std::max(bottom - top, 1);
-    return contrast(side.top, top - reach, top, right) >= least ||
-           contrast(side.bottom, bottom, bottom + reach, right) >= least;
+    Contrast side;
+    int top = -1, bottom = 0, first_column = 0, last_column = 0;  // where the side begins and ends
+    for_outermost(runs, component, right, {0, frame.height}, [&](int y, int x) {
+      side.add(frame, x, y, right);
+      if (top < 0) top = y, first_column = x;
+      bottom = y + 1, last_column = x;
+    });
+    if (side.sum == 0) return false;
+    const int reach = std::max(p.least_reach, static_cast<int>(p.reach * (bottom - top)));
+    const auto is_edge = [&](int x, int from, int to) {
+      Contrast beyond;
+      for (int y = std::max(from, 0); y < std::min(to, frame.height); ++y)
+        if (x < frame.width && !(mask.row(y)[x / 64] >> (x % 64) & 1)) beyond.add(frame, x, y, right);
+      return beyond.rows > 0 && beyond.mean() >= p.goes_on * side.mean();
+    };
+    return is_edge(first_column, top - reach, top) || is_edge(last_column, bottom, bottom + reach);
   };
   return goes_on(false) && goes_on(true);
 }

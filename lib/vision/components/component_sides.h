@@ -33,7 +33,8 @@ bool is_side_of_object(GrayView frame, GrayView background, std::span<const Run>
                        bool right, const Rows& rows);
 
 // Returns whether both sides of a component are edges of the scene: they go on in the frame above or below it, for a quarter
-// of its height. What a door frame cuts out of the place that somebody left has such sides. mask: the foreground.
+// of its height and 4 rows at least. Of a side at the picture's edge, where nothing can be compared, this is not known:
+// false. What a door frame cuts out of the place that somebody left has such sides. mask: the foreground.
 bool sides_go_on(GrayView frame, BitView mask, std::span<const Run> runs, std::size_t component);
 
 }  // namespace cerberus::vision

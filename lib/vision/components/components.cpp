@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 
 #include "vision/components/component_sides.h"
 #include "vision/components/fragment_joining.h"
@@ -255,6 +256,7 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
   if (input.still) {
     resting_ghosts_.remove({input.frame, input.background, input.quiet}, windows.recent, labeller_, mask,
                            absorb);
+    origins_.forget(absorb);
     moved_ = 0;
   }
   return young_objects;
@@ -262,9 +264,15 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
 
 // What rests and is an object by its sides only is none where these are edges of the scene.
 void ForegroundComponents::doubt_edges(GrayView frame, BitView mask) {
-  for (std::size_t i = 0; i < evidence_.size() && evidence_.size() <= kParameters.most_components; ++i)
-    if (evidence_[i].object && !evidence_[i].moved_recently && sides_go_on(frame, mask, labeller_.runs(), i))
-      evidence_[i].object = false;
+  const auto components = labeller_.components();
+  if (components.size() > kParameters.most_components) return;
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    Evidence& evidence = evidence_[i];
+    if (!evidence.object || evidence.moved_recently || !sides_go_on(frame, mask, labeller_.runs(), i))
+      continue;
+    evidence.object = false;
+    evidence.doubtful = evidence.doubtful || 2 * evidence.young_pixels > static_cast<int>(components[i].area);
+  }
 }
 
 // absorb := pixels of the components that are not kept: doubtful ones at once, the others after as many frames at rest
@@ -303,6 +311,8 @@ void ForegroundComponents::merge_neighbours(const ComponentInput& input, const F
     const Component& a = components[i];
     if (2 * evidence_[i].young_pixels < static_cast<int>(a.area)) continue;
     evidence_[i].fragment = a.area < p.least_area * input.frame.size().area();
+    const Rows own{a.top, a.bottom};
+    std::optional<bool> sides;  // are both its own an object's? Asked for once
     for (std::size_t j = 0; components.size() <= p.most_components && j < components.size(); ++j) {
       const Component& b = components[j];
       if (i == j || b.area < a.area || (b.area == a.area && j < i)) continue;
@@ -316,16 +326,17 @@ void ForegroundComponents::merge_neighbours(const ComponentInput& input, const F
                            : narrow_a || narrow_b ? p.fragment_gap
                                                   : p.gap;
       const bool two = a.area >= p.fragment * b.area || narrow_a || narrow_b;
-      const Rows beside{between.top, between.bottom}, own{a.top, a.bottom};
+      const Rows beside{between.top, between.bottom};
       const bool a_is_left = a.left < b.left;
       if (level && across > 0 && across < reach * tall && two && !evidence_[i].fragment &&
           is_even(input.frame, between, std::min(a.width(), b.width())) &&
           !(is_object(i, a_is_left, beside) && is_object(j, !a_is_left, beside))) {
         for (int y = between.top; y < between.bottom; ++y) set_bits(mask.row(y), between.left, between.right);
         evidence_[i].merged = evidence_[j].merged = true;
-      } else if (across < p.fragment_gap * tall && down < p.fragment_gap * tall &&
-                 a.area < p.fragment * b.area && !(is_object(i, true, own) && is_object(i, false, own))) {
-        evidence_[i].fragment = true;
+      } else if (!evidence_[i].fragment && across < p.fragment_gap * tall && down < p.fragment_gap * tall &&
+                 a.area < p.fragment * b.area) {
+        if (!sides) sides = is_object(i, true, own) && is_object(i, false, own);
+        evidence_[i].fragment = !*sides;
       }
     }
   }

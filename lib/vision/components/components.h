@@ -55,7 +55,8 @@ class ForegroundComponents {
   // Where the background is young, the ghost of an object that stood there at the start looks like an object: a moving
   // edge runs along it, and a few frames cannot tell the two apart. Components close to each other are then one object:
   // two of similar size, or two narrow ones, with an even gap between them (the gap is filled), or a large component
-  // and its fragments (the fragments are dropped: they would join a strip of background to it).
+  // and its fragments (the fragments are dropped: they would join a strip of background to it). Before a camera that
+  // stands, neither two whose facing sides are an object's, nor a small one whose own sides are both.
   // closed: the mask with its gaps closed, used as scratch memory.
   void merge_neighbours(const ComponentInput& input, const FrameWindows& windows, MutableBitView closed,
                         MutableBitView mask);
@@ -95,7 +96,7 @@ class ForegroundComponents {
   std::vector<Evidence> evidence_;  // by component
   ComponentOrigins origins_;
   RestingGhosts resting_ghosts_;
-  std::size_t found_ = 0;  // components of the last picture
+  std::size_t found_ = 0;  // components that classify() found, before any was dropped
   int moved_ =
       3;  // frames since the camera stood; as many as `shake` and more: it has moved away from what it saw
 };
