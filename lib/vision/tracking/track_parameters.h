@@ -3,7 +3,7 @@
 //
 // S is the object's own length, max(width, height): a standing person is about 1.7 m, so that a walk of 1.4 m/s is
 // 0.8 S a second at any distance and any picture size. Where no origin stands the value was chosen by hand on vtest.avi
-// and davis_tennis. Guard of all of them, where no other stands: the boxes on vtest.avi (precision .84, recall .83) and
+// and davis_tennis. Guard of all of them, where no other stands: the boxes on vtest.avi (docs/quality.md) and
 // MOTA 70 on PETS09-S2L1.
 #pragma once
 
@@ -65,12 +65,12 @@ struct TrackParameters {
   double jump_speed = 2.5;  // S/s, beside a runner's speed
 
   // A region of another extent replaces the track's: after so many seconds ...
-  double whole_misfit = 0.2;    // s, of a person-like region, where the track's was one as well
-  double growing_misfit = 0.2;  // s, of a larger region that was reached in steps
-  double jumped_misfit = 0.6;   // s, of a larger region that was reached by a jump
-  // s, of a smaller region: as for one that grows. measured: with .5 the skier of otb_Skiing is found in .37 of the frames
-  // instead of .44; MOTA on TUD-Campus and TUD-Stadtmitte is .01 higher.
-  double shrinking_misfit = 0.2;
+  double whole_misfit = 0.2;  // s, of a person-like region, where the track's was one as well
+  // s, of a larger region that was reached in steps. swept: docs/quality.md, .2 to .5.
+  double growing_misfit = 0.25;
+  double jumped_misfit = 0.6;  // s, of a larger region that was reached by a jump
+  // s, of a smaller region before a camera that stands. swept: docs/quality.md, .15 to .6.
+  double shrinking_misfit = 0.4;
   // s, of a smaller region while the camera moves, and two frames at least: what is followed there turns and goes away
   // quickly. swept: the skier of otb_Skiing is found in .65 of the frames with .05, .60 with .1, .51 with .2.
   double panned_misfit = 0.05;
