@@ -33,7 +33,7 @@ constexpr double kHiddenFor = 3;  // s, issue: who was hidden for so long is the
 constexpr double kAround = 1;     // s before and after it in which the person must be matched to be judged
 
 constexpr double kBias = 0.05;  // the most that is asked
-// Whether the bias is reached; the share of hidden people that must be kept: all are wanted.
+// Whether the bias is reached; the share of hidden people that must be kept (all are wanted), 0: none is promised.
 struct PromisedFit {
   const char* name;
   bool fits;
@@ -180,7 +180,8 @@ bool measure(const PeopleSequence& s, const std::string& detector, Asked& asked)
   if (hidden.asked > 0)
     std::printf("%s", asked
                           .at_least("people hidden on " + s.name + " who are kept",
-                                    static_cast<double>(hidden.kept) / hidden.asked, promised.kept)
+                                    static_cast<double>(hidden.kept) / hidden.asked,
+                                    promised.kept > 0 ? promised.kept : 1, promised.kept > 0)
                           .c_str());
   std::puts("");
   return true;

@@ -18,7 +18,7 @@ namespace cerberus::vision {
 class HeightPrior {
  public:
   // Where no origin stands the value was chosen by hand on vtest.avi. Guard: tests/unit/height_prior and the boxes on
-  // vtest.avi (precision .84, recall .83).
+  // vtest.avi (docs/quality.md).
   struct Parameters {
     double spread =
         0.10;            // of the height, standard deviation. derived: adults differ by 5 %, blobs by as much
@@ -26,7 +26,8 @@ class HeightPrior {
     double share = 0.5;  // of the samples' weight that must agree
     int least = 8;       // agreeing samples before the prior answers
     double uncertain = 0.16;  // relative standard error of the line beyond which it does not answer
-    // Samples that count as one: the strides of one person are alike. swept: docs/quality.md, 1 to 4.
+    // Samples that count as one: those of one person are alike, by frames of who walks alone and by strides of bodies.
+    // swept: docs/quality.md, 1 to 4.
     double repeats = 2.0;
     int guesses = 40;         // pairs of samples tried as lines
     int through_horizon = 4;  // every so manieth guess is a line through the picture's upper edge
@@ -54,7 +55,7 @@ class HeightPrior {
   // at rows too far from all samples.
   double height(double foot) const;
 
-  // Relative standard error of that height: of the line, not of a person.
+  // Relative standard error of that height: of the line, not of a person. Only where height() is known.
   double uncertainty(double foot) const;
 
   bool ready() const { return ready_; }
@@ -72,7 +73,7 @@ class HeightPrior {
   std::size_t count_ = 0, next_ = 0, fresh_ = 0;
   unsigned random_ = 1;
   bool ready_ = false;
-  // height = mean_height_ + slope_ (foot - mean_foot_); variances of the two terms, and of a single person
+  // height = mean_height_ + slope_ (foot - mean_foot_), and variances of the two terms
   double mean_foot_ = 0, mean_height_ = 0, slope_ = 0;
   double mean_variance_ = 0, slope_variance_ = 0;
 };

@@ -235,7 +235,7 @@ void PeopleFinder::try_row(int foot, const Scale& scale, int from, int to, int a
 // everywhere, and its neighbours where that fits best. Heights that the line does not exclude where it is uncertain are
 // tried everywhere, and where the height is not known, all of them.
 PeopleFinder::Candidate PeopleFinder::best(int from, int to, int anchor) {
-  constexpr double kDeviations = 2;  // that a height may be off
+  constexpr double kDeviations = 2;  // that a height may be off, as far as the scales reach
   const double sure =
       std::numbers::sqrt2 * parameters_.spread;  // the line's error is as large as people differ
   Candidate best;

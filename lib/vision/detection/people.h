@@ -38,7 +38,7 @@ class PeopleFinder {
     double core_moving, side_moving;
   };
   // Where no origin stands the value was chosen by hand on vtest.avi and TUD-Campus. Guard: tests/unit (people,
-  // regions), the boxes on vtest.avi (precision .84, recall .83), MOTA 70 on PETS09-S2L1.
+  // regions), the boxes on vtest.avi (docs/quality.md), MOTA 70 on PETS09-S2L1.
   struct Parameters {
     // The space above a head is background: a trunk is no head. It has no price.
     Part free_space{-0.10, -0.02, 0.07, 0.07, 0.03, 0.03};
@@ -51,7 +51,7 @@ class PeopleFinder {
     double price = 0.3;
     // A height that differs from the expected one costs as in a log-normal prior.
     double height_weight = 0.16;  // nats of a squared height. derived: half of a body's pixels, 0.33 h^2
-    // Of the logarithm of the height: adults differ by 5 %, the line is as uncertain. measured: MOTA on PETS09-S2L1 71.8
+    // Of the logarithm of the height: adults differ by 5 %, blobs by as much; the line's own error is added. measured: MOTA on PETS09-S2L1 71.8
     // with .08 and 73.5 with .11, where a clock over the picture costs 2 % of the recall.
     double spread = 0.08;
     // Where the height is not known the blob's is expected, and smaller ones are tried by steps. measured: the step of the
@@ -143,7 +143,7 @@ class PeopleFinder {
   Parameters parameters_;
   std::array<BodyBand, kParts> bands_;  // gains only
   std::array<Body, kTallest + 1> bodies_;
-  // The expected height, its neighbours, and those beyond, which are for a line that is uncertain.
+  // The expected height, its neighbours, and those beyond, up to a quarter off, which are for a line that is uncertain.
   static constexpr std::size_t kNeighbours = 2;
   std::array<Scale, 7> scales_;
   std::array<Scale, 6> unknown_scales_;  // of the blob's height

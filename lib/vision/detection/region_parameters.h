@@ -2,7 +2,7 @@
 // Tuned numbers of the way from components to regions (regions.cpp).
 //
 // Where no origin stands the value was chosen by hand on vtest.avi. Guard of all: tests/unit/regions and the boxes on
-// vtest.avi (precision .84, recall .83).
+// vtest.avi (docs/quality.md).
 #pragma once
 
 #include "vision/detection/height_prior.h"

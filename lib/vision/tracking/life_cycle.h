@@ -26,7 +26,7 @@ namespace cerberus::vision {
 class LifeCycle {
  public:
   // Where no origin stands the value was chosen by hand on vtest.avi and davis_tennis. Guard: boxes on vtest.avi
-  // (precision .84, recall .83), MOTA 70 on PETS09-S2L1, tests/unit (tracker, standing, straight, turning).
+  // (docs/quality.md), MOTA 70 on PETS09-S2L1, tests/unit (tracker, standing, straight, turning).
   struct Parameters {
     // Confirmation.
     // S that an object has moved. The uncovered place of an object that belonged to the background model, and a lamp
@@ -44,8 +44,8 @@ class LifeCycle {
     double proven = 3;     // times confirm-time for which a coasted track was seen before it is published
     double certain = 0.4;  // of the box's width: standard deviation up to which a coasted track is published
     // Of the largest height that it had: what the picture's left or right edge cuts to this width is mostly outside, and
-    // unpublished. derived: half of the width of a walking person. swept: MOTA on TUD-Campus is .21 without, .26 to .27 from .14 to
-    // .22 (docs/quality.md).
+    // unpublished. derived: half of the width of a walking person. swept: MOTA on TUD-Campus is .21 without, .26 to .27
+    // from .14 to .22 (docs/quality.md).
     double sliver = 0.18;
     double occluded_coast = 0.3;  // s for which an occluded track is published
     // Stopping: the object was well seen, slower and slower.
