@@ -66,7 +66,7 @@ struct TrackParameters {
 
   // A region of another extent replaces the track's: after so many seconds ...
   double whole_misfit = 0.2;  // s, of a person-like region, where the track's was one as well
-  // s, of a larger region that was reached in steps. swept: docs/quality.md, .2 to .5.
+  // s, of a larger region that was reached in steps. swept: docs/quality.md, .2 to .5; guard: bench-steady.
   double growing_misfit = 0.25;
   double jumped_misfit = 0.6;  // s, of a larger region that was reached by a jump
   // s, of a smaller region before a camera that stands. swept: docs/quality.md, .15 to .6.
