@@ -18,7 +18,9 @@ constexpr double kWidth = 60, kHeight = 40;  // of the ellipse, pixels
 constexpr double kSpeed = 2000;              // pixels a second, to the right
 constexpr double kMostOff = kWidth / 10;     // pixels between the middles of ellipse and box
 constexpr int kAlone = 100;                  // frames of the scene before it comes
-constexpr int kBeyond = 600;                 // columns of the scene left and right of the first view
+constexpr int kMostTurn = 12;                // columns by which the camera goes on from frame to frame
+// Columns of the scene left and right of the view in which it comes: the camera has turned for as long before.
+constexpr int kBeyond = kAlone * kMostTurn;
 
 // The scene is wider than the picture, so that a camera can turn along it.
 struct Wall {
@@ -83,7 +85,7 @@ Followed follow(const Wall& wall, double rate, int turn) {
 START_TEST(an_ellipse_of_2000_pixels_a_second_is_boxed_within_a_tenth_of_its_length) {
   const Wall wall;
   for (const double rate : {25.0, 30.0, 60.0})
-    for (const int turn : {0, 6, -12}) {
+    for (const int turn : {0, 6, -kMostTurn}) {
       const Followed f = follow(wall, rate, turn);
       ck_assert_msg(2 * f.off.size() > static_cast<std::size_t>(f.whole),
                     "%g frames a second, turning by %d: seen in %zu of %d frames", rate, turn, f.off.size(),
