@@ -33,7 +33,7 @@
  * data that they were trained with has terms of its own.
  *
  * Live, a result counts from the first frame after it is there, and no frame waits. In a pipeline that is not live it
- * counts from the first frame that is at least 100 ms of running time later than the frame that was looked at, and that
+ * counts from the first frame that is at least 40 ms of running time later than the frame that was looked at, and that
  * frame waits for it: two runs give the same bytes.
  *
  * Pads: one sink, one src, raw video in system memory, in every format that the stages read; works in place, on the
@@ -86,9 +86,10 @@ GstStaticPadTemplate src_template =
 
 // Columns of the reduced picture in which persons are followed. Chosen: as motiondetect's.
 constexpr int kFollowedWidth = 320;
-// Running time after which a result counts where the pipeline is not live. Derived: twice the cost of a look.
-constexpr GstClockTime kDelay = 100 * GST_MSECOND;
-// Looks a second: more than one in kDelay cannot be taken in.
+// Running time after which a result counts where the pipeline is not live. Derived: the cost of a look. swept:
+// docs/quality.md, 40 and 100 ms.
+constexpr GstClockTime kDelay = 40 * GST_MSECOND;
+// Looks a second. Derived: a slow processor takes 100 ms for one.
 constexpr double kMostRate = 10;
 // Seconds between frames of a stream without times.
 constexpr double kUsualStep = 0.04;
@@ -190,10 +191,11 @@ gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
                       : model                ? kModelThreshold
                                              : kDaimlerThreshold;
     state.certain = std::max(model ? kModelCertain : kDaimlerCertain, state.threshold);
+    const double least = state.verifier.least_score(state.threshold);
     std::string wrong;
-    auto detector =
-        model ? cerberus::plugin::make_model_detector(settings.model, settings.labels, state.threshold, wrong)
-              : cerberus::plugin::make_daimler_detector(state.threshold);
+    auto detector = model
+                        ? cerberus::plugin::make_model_detector(settings.model, settings.labels, least, wrong)
+                        : cerberus::plugin::make_daimler_detector(least);
     if (!detector) {
       CERBERUS_ELEMENT_ERROR(transform, RESOURCE, SETTINGS, (wrong), ("the property model cannot be used"));
       return FALSE;

@@ -3,6 +3,7 @@
 // what is expected follows from the looks alone.
 #include "vision/verification/followed_person.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "support/suite.h"
@@ -230,6 +231,75 @@ START_TEST(other_ground_is_learnt_anew) {
 }
 END_TEST
 
+// Weak: below the threshold of 1.7, down to .65 of it.
+START_TEST(a_weak_hit_shows_a_person_who_is_known) {
+  for (const double score : {1.2, 0.0}) {
+    Rig rig;
+    rig.look({{person_at(200), 3}});
+    rig.look({{person_at(200), 3}});
+    for (int n = 0; n < 4; ++n) score > 0 ? rig.look({{person_at(204), score}}) : rig.look({});
+    ck_assert((rig.person() != nullptr) == (score > 0));
+  }
+}
+END_TEST
+
+START_TEST(a_weak_hit_shows_a_new_person_only_where_it_is_as_high_as_people_are_and_in_its_second_look) {
+  Rig rig;
+  rig.look({{standing(270), 1.2}});
+  rig.look({{standing(270), 1.2}});
+  ck_assert_ptr_null(rig.person());  // nothing is known of the heights yet
+  for (const double foot : {260, 270, 275, 280, 285, 288, 265}) rig.look({{standing(foot), 3}});
+  for (int n = 0; n < 3; ++n) rig.look({});
+  ck_assert_ptr_null(rig.person());
+  rig.look({{standing(282), 1.2}});
+  ck_assert_ptr_null(rig.person());
+  rig.look({{standing(282), 1.2}});
+  ck_assert_ptr_nonnull(rig.person());
+}
+END_TEST
+
+// The nearer person's feet are lower. Three looks do not show the other one.
+START_TEST(who_is_hidden_by_a_nearer_person_is_not_refuted_for_a_second) {
+  const Box behind{200, 100, 60, 160}, front{226, 110, 80, 210}, beside{300, 110, 80, 210};
+  for (const bool hidden : {true, false}) {
+    const Box& other = hidden ? front : beside;
+    Rig rig;
+    for (int n = 0; n < 2; ++n) rig.look({{behind, 3}, {other, 3}});
+    const auto persons = [&] {
+      return std::ranges::count_if(rig.verifier.result(), &VerifiedRegion::person);
+    };
+    ck_assert_int_eq(persons(), 2);
+    for (int n = 0; n < 3; ++n) rig.look({{other, 3}});
+    ck_assert_int_eq(persons(), hidden ? 2 : 1);
+    rig.frames(25);
+    for (int n = 0; n < 3; ++n) rig.look({{other, 3}});
+    ck_assert_int_eq(persons(), 1);
+  }
+}
+END_TEST
+
+START_TEST(a_part_that_was_taken_for_a_person_ends_when_a_look_shows_the_whole) {
+  Rig rig;
+  const Box head_and_trunk{205, 105, 45, 100}, whole{200, 100, 70, 190};
+  rig.look({{head_and_trunk, 3}});
+  rig.look({{head_and_trunk, 3}});
+  rig.look({{whole, 3}});
+  const auto all = rig.verifier.result();
+  ck_assert_int_eq(std::ranges::count_if(all, &VerifiedRegion::person), 1);
+  ck_assert_double_gt(rig.person()->box.height, 150);
+}
+END_TEST
+
+START_TEST(a_detection_of_another_height_is_another_person) {
+  Rig rig;
+  rig.look({{Box{200, 90, 70, 190}, 3}});
+  rig.look({{Box{200, 90, 70, 190}, 3}});
+  const auto id = rig.person()->id;
+  for (int n = 0; n < 4; ++n) rig.look({{Box{215, 95, 48, 120}, 3}});  // overlaps by .43 of the union
+  for (const VerifiedRegion& each : rig.verifier.result()) ck_assert(!each.person || each.id != id);
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "followed_person",
@@ -238,5 +308,10 @@ int main() {
        heights_are_judged_by_where_the_feet_are, two_wrong_heights_do_not_bend_the_line,
        the_line_tilts_with_the_camera, who_was_hidden_for_less_than_three_seconds_keeps_the_identity,
        a_person_follows_a_track_that_looks_have_found_right, an_identity_is_published_once,
-       a_hit_that_is_not_as_high_as_people_are_is_none, other_ground_is_learnt_anew});
+       a_hit_that_is_not_as_high_as_people_are_is_none, other_ground_is_learnt_anew,
+       a_weak_hit_shows_a_person_who_is_known,
+       a_weak_hit_shows_a_new_person_only_where_it_is_as_high_as_people_are_and_in_its_second_look,
+       who_is_hidden_by_a_nearer_person_is_not_refuted_for_a_second,
+       a_part_that_was_taken_for_a_person_ends_when_a_look_shows_the_whole,
+       a_detection_of_another_height_is_another_person});
 }

@@ -313,6 +313,12 @@ START_TEST(tracks_in_view_are_published_while_their_place_is_certain) {
   sliver.w.value = std::log(16);
   ck_assert(!published(sliver, as_it_is));
   ck_assert(published(sliver, as_it_is, true));  // before a camera that turns it may be coming in
+  TrackHypothesis piece = track(Confirmed{});  // of a person, at the same edge, though as wide as a whole one
+  piece.kind = RegionKind::part;
+  ck_assert(published(piece, as_it_is));
+  piece.x.position = piece.width() / 2;
+  ck_assert(!published(piece, as_it_is));
+  ck_assert(published(piece, as_it_is, true));
   for (const TrackLife& life : {TrackLife(Confirmed{}), TrackLife(Coasted{}), TrackLife(Stopped{})}) {
     const auto shared = [&](bool occluded, double unlocated) {
       return published(track(life),

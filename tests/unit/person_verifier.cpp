@@ -77,6 +77,26 @@ Box person_at(double x) {
 
 }  // namespace
 
+// The texture of the person goes on by 6 pixels a frame before the look and after it, behind somebody who stands in some
+// of the frames; another one of the same texture does not move.
+START_TEST(the_first_look_finds_the_velocity_in_the_pictures_around_it) {
+  const VerificationParameters numbers;
+  for (const double step : {6.0, -6.0, 0.0}) {
+    Scene scene;
+    PictureHistory pictures;
+    for (int n = 0; n < 8; ++n) {
+      const Box person = person_at(300 + step * n), passer{330, 90, 60, 200};
+      pictures.add(n < 2 ? scene.with({person, passer}) : scene.with({person}), kFrame, {});
+    }
+    FollowedPerson person;
+    person.begin(person_at(300 + step * 5), 6, pictures, numbers);
+    ck_assert_double_eq_tol(person.velocity().x, step, 0.6);
+    ck_assert_double_eq_tol(person.velocity().y, 0, 0.6);
+    ck_assert_double_eq_tol(person.box().x, 300 + step * 7, 2);
+  }
+}
+END_TEST
+
 START_TEST(hits_of_one_person_become_their_weighted_mean_and_parts_of_it_are_dropped) {
   // Weights score - 1: 2 and 1. The third lies in the first; the fourth stands apart.
   std::vector<PersonDetection> hits{
@@ -402,7 +422,8 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "person_verifier",
-      {hits_of_one_person_become_their_weighted_mean_and_parts_of_it_are_dropped,
+      {the_first_look_finds_the_velocity_in_the_pictures_around_it,
+       hits_of_one_person_become_their_weighted_mean_and_parts_of_it_are_dropped,
        a_patch_is_found_where_it_went_and_between_pixels,
        the_most_doubtful_box_is_looked_at_with_neighbours_that_fit,
        a_detection_makes_its_track_a_person_with_the_tracks_identity,

@@ -11,6 +11,10 @@ double overlap_area(const Box& a, const Box& b) {
   return w > 0 && h > 0 ? w * h : 0;
 }
 
+double share_within(const Box& box, const Box& outer) {
+  return box.area() > 0 ? overlap_area(box, outer) / box.area() : 0;
+}
+
 double intersection_over_union(const Box& a, const Box& b) {
   const double both = overlap_area(a, b);
   return both > 0 ? both / (a.area() + b.area() - both) : 0;

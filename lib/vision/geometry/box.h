@@ -11,6 +11,8 @@ struct Box {
   double area() const { return width * height; }
 };
 double overlap_area(const Box& a, const Box& b);
+// Of the box's area, that which lies in the other one; 0 of an empty box.
+double share_within(const Box& box, const Box& outer);
 double intersection_over_union(const Box& a, const Box& b);
 
 }  // namespace cerberus::vision

@@ -180,13 +180,15 @@ bool LifeCycle::outside(const TrackHypothesis& t) const {
          t.y.position > frame_.size.height;
 }
 
-// Does the picture's left or right edge leave so little of it that most is outside? Before a camera that turns it may be
-// coming in.
+// Does the picture's left or right edge leave so little of it that most is outside? What is too low for a person there is
+// a piece of one. Before a camera that turns it may be coming in.
 bool LifeCycle::is_sliver(const TrackHypothesis& t) const {
   const Box box = t.box();
   const double margin = t.parameters->cut_margin * frame_.size.width;
-  return !frame_.turning && (box.x < margin || box.right() > frame_.size.width - margin) &&
-         box.width < parameters_.sliver * std::max(t.uncut.height, box.height);
+  const bool at_edge = box.x < margin || box.right() > frame_.size.width - margin;
+  return !frame_.turning && at_edge &&
+         (t.kind == RegionKind::part ||
+          box.width < parameters_.sliver * std::max(t.uncut.height, box.height));
 }
 
 double LifeCycle::coast_time(const TrackHypothesis& t) const {

@@ -54,9 +54,65 @@ void FollowedPerson::keep(const PictureHistory& pictures) {
   places_[pictures.number() % PictureHistory::kKept] = {box_, way_};
 }
 
+// The velocity with which the pictures around frame `number` look most alike at the person, camera motion taken out.
+// Several pictures before and after it count at once: somebody who passes hides the person in some of them only, and a
+// pixel that differs much counts as hidden. False: there are too few pictures.
+bool FollowedPerson::find_velocity(std::uint64_t number, const PictureHistory& pictures,
+                                   const VerificationParameters& p) {
+  struct Other {
+    GrayView picture;
+    Point camera;  // reduced pixels that the camera's motion shifts the person, from frame `number`
+    double frames;
+  };
+  std::array<Other, 2 * kMostAround> others;
+  std::size_t n = 0;
+  const auto most = static_cast<std::uint64_t>(std::clamp(p.velocity_frames, 0, kMostAround));
+  const Box core = core_of(pictures.reduced(box_), p);
+  const GrayView now = pictures.picture(number);
+  const Point middle = middle_of(core);
+  const auto add = [&](std::uint64_t k, const Point& at) {
+    if (pictures.picture(k).size() != now.size()) return;
+    others[n++] = {pictures.picture(k),
+                   {at.x - middle.x, at.y - middle.y},
+                   static_cast<double>(k) - static_cast<double>(number)};
+  };
+  Point at = middle;
+  for (std::uint64_t k = number + 1; k <= std::min(number + most, pictures.number()); ++k)
+    add(k, at = pictures.motion(k).apply(at));
+  at = middle;
+  for (std::uint64_t k = number; k > 1 && k + most > number && pictures.holds(k - 1); --k)
+    add(k - 1, at = pictures.motion(k).inverse().apply(at));
+  if (n < 2) return false;
+  const auto difference = [&](const Point& v) {
+    double sum = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Other& o = others[i];
+      const Point shift{o.camera.x + o.frames * v.x, o.camera.y + o.frames * v.y};
+      sum += patch_difference(now, o.picture, core, shift, p.hidden_difference).value_or(p.hidden_difference);
+    }
+    return sum;
+  };
+  const int reach = static_cast<int>(std::ceil(p.reach * pictures.reduced(box_).height));
+  Point best;
+  double least = difference(best);
+  for (const double step : {1.0, 0.5, 0.25}) {  // reduced pixels a frame
+    const int across = step == 1 ? reach : 1;
+    const Point from = best;
+    for (int x = -across; x <= across; ++x)
+      for (int y = -1; y <= 1; ++y) {
+        const Point v{from.x + step * x, from.y + step * y};
+        const double d = difference(v);
+        if (d < least) least = d, best = v;
+      }
+  }
+  velocity_ = {best.x / pictures.across(), best.y / pictures.down()};
+  return true;
+}
+
 void FollowedPerson::begin(const Box& found, std::uint64_t number, const PictureHistory& pictures,
                            const VerificationParameters& p) {
   box_ = found;
+  velocity_known_ = find_velocity(number, pictures, p);
   looks_ = 1, look_number_ = number;
   places_[number % PictureHistory::kKept] = {box_, way_};
   for (std::uint64_t n = number + 1; n <= pictures.number(); ++n) follow(n, pictures, p);
@@ -73,7 +129,8 @@ void FollowedPerson::follow(std::uint64_t to, const PictureHistory& pictures,
   const Point middle = middle_of(small), moved = pictures.motion(to).apply(middle);
   const Point camera{moved.x - middle.x, moved.y - middle.y};
   Point step{camera.x + sx * velocity_.x, camera.y + sy * velocity_.y};
-  const bool known = looks_ > 1, whole = pictures.seen(box_).area() > p.whole * box_.area();
+  const bool known = looks_ > 1 || velocity_known_,
+             whole = pictures.seen(box_).area() > p.whole * box_.area();
   if (!known || whole) {  // of a person whom the picture's edge cuts the picture says little
     const int reach = known ? std::max(1, static_cast<int>(std::lround(p.reach_known * small.height)))
                             : std::max(2, static_cast<int>(std::ceil(p.reach * small.height)));

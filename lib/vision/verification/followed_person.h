@@ -72,13 +72,16 @@ class FollowedPerson {
     Box box;
     Point way;
   };
+  static constexpr int kMostAround = 12;  // pictures that are compared, before a look and after it
+  bool find_velocity(std::uint64_t number, const PictureHistory& pictures, const VerificationParameters& p);
   void shift(double dx, double dy);
   void keep(const PictureHistory& pictures);
 
   Box box_;
   Point velocity_;
-  Point way_;      // of the box's middle from where it was first seen
-  int looks_ = 0;  // that showed the person
+  Point way_;                    // of the box's middle from where it was first seen
+  bool velocity_known_ = false;  // from the pictures around the first look
+  int looks_ = 0;                // that showed the person
   Point look_way_;
   std::uint64_t look_number_ = 0;
   bool moved_ = false;

@@ -19,7 +19,7 @@ struct Area {
 
 // Mean absolute difference between `a` in `before` and the same area, displaced, in `now`, over what both pictures
 // show.
-double mean_difference(GrayView before, GrayView now, const Area& a, int dx, int dy) {
+double mean_difference(GrayView before, GrayView now, const Area& a, int dx, int dy, int most = 255) {
   const int left = std::max(a.left, -dx), right = std::min(a.right, now.width - dx);
   const int top = std::max(a.top, -dy), bottom = std::min(a.bottom, now.height - dy);
   if (right - left < 1 || bottom - top < 1 || (right - left) * (bottom - top) < kFewest) return kNone;
@@ -28,10 +28,17 @@ double mean_difference(GrayView before, GrayView now, const Area& a, int dx, int
   for (int y = top; y < bottom; ++y) {
     const std::uint8_t *p = before.row(y), *q = now.row(y + dy) + dx;
     int row = 0;
-    for (int x = left; x < right; ++x) row += std::abs(p[x] - q[x]);
+    for (int x = left; x < right; ++x) row += std::min(std::abs(p[x] - q[x]), most);
     sum += row;
   }
   return static_cast<double>(sum) / ((right - left) * (bottom - top));
+}
+
+Area area_of(const Box& patch, Size picture) {
+  return {std::max(0, static_cast<int>(std::lround(patch.x))),
+          std::max(0, static_cast<int>(std::lround(patch.y))),
+          std::min(picture.width, static_cast<int>(std::lround(patch.right()))),
+          std::min(picture.height, static_cast<int>(std::lround(patch.bottom())))};
 }
 
 // Offset of the lowest point of the parabola through three sums one pixel apart.
@@ -42,11 +49,17 @@ double vertex(double left, double middle, double right) {
 
 }  // namespace
 
+std::optional<double> patch_difference(GrayView before, GrayView now, const Box& patch, Point displaced,
+                                       int most) {
+  const Area area = area_of(patch, before.size());
+  if (area.left >= area.right || area.top >= area.bottom || before.size() != now.size()) return std::nullopt;
+  const double mean = mean_difference(before, now, area, static_cast<int>(std::lround(displaced.x)),
+                                      static_cast<int>(std::lround(displaced.y)), most);
+  return std::isfinite(mean) ? std::optional(mean) : std::nullopt;
+}
+
 Point match_patch(GrayView before, GrayView now, const Box& patch, Point guess, int reach) {
-  const Area area{std::max(0, static_cast<int>(std::lround(patch.x))),
-                  std::max(0, static_cast<int>(std::lround(patch.y))),
-                  std::min(before.width, static_cast<int>(std::lround(patch.right()))),
-                  std::min(before.height, static_cast<int>(std::lround(patch.bottom())))};
+  const Area area = area_of(patch, before.size());
   if (area.left >= area.right || area.top >= area.bottom || before.size() != now.size()) return guess;
   const int x0 = static_cast<int>(std::lround(guess.x)), y0 = static_cast<int>(std::lround(guess.y));
   int dx = x0, dy = y0;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace cerberus::vision {
 
@@ -11,10 +10,6 @@ namespace {
 
 Point middle_of(const Box& box) {
   return {box.x + box.width / 2, box.y + box.height / 2};
-}
-
-double share_within(const Box& box, const Box& outer) {
-  return box.area() > 0 ? overlap_area(box, outer) / box.area() : 0;
 }
 
 }  // namespace
@@ -65,7 +60,7 @@ void PersonVerifier::update(GrayView picture, Size frame, const Transform& motio
   for (Person& person : people_) {
     person.since_support += seconds;
     if (is_supported(person.box())) person.since_support = 0;
-    person.sure = person.sure || share_on_tracks(person.box()) >= p_.on_track;
+    person.sure = person.sure || (!person.weak && share_on_tracks(person.box()) >= p_.on_track);
   }
   forget_if([&](const Person& person) {
     const double longest = person.moved() ? p_.longest : p_.longest_still;
@@ -76,19 +71,12 @@ void PersonVerifier::update(GrayView picture, Size frame, const Transform& motio
 
 // With a picture of some frames before, if the camera has stood since.
 void PersonVerifier::compare() {
-  const auto back = static_cast<std::uint64_t>(p_.change_frames), now = pictures_.number();
-  bool stood = now > back;
+  const std::uint64_t now = pictures_.number();
+  const auto back = std::min(static_cast<std::uint64_t>(p_.change_frames), now - 1);
+  bool stood = back >= static_cast<std::uint64_t>(p_.least_change_frames);
   for (std::uint64_t n = now; stood && n > now - back; --n)
     stood = pictures_.motion(n).corner_motion(pictures_.picture(n).size()) < p_.stands;
   changes_.update(pictures_.picture(now), stood ? pictures_.picture(now - back) : GrayView{}, seconds_, p_);
-}
-
-template <typename Condition>
-void PersonVerifier::forget_if(Condition ends) {
-  for (const Person& person : people_)
-    if (ends(person) && person.id != 0 && person.looks() > 1 && lost_.size() < kMostLost)
-      lost_.push_back({person.id, person.box(), person.velocity(), person.age, 0});
-  std::erase_if(people_, ends);
 }
 
 void PersonVerifier::carry_lost(const Transform& motion) {
@@ -189,17 +177,6 @@ void PersonVerifier::bind() {
   }
 }
 
-// Legs, or a torso, that look like a smaller person.
-bool PersonVerifier::is_part(const Box& box) const {
-  const auto is_of = [&](const Box& whole) {
-    return box.height < p_.part_height * whole.height && share_within(box, whole) >= p_.part;
-  };
-  return std::ranges::any_of(people_, [&](const Person& q) { return is_of(q.box()); }) ||
-         std::ranges::any_of(candidates_, [&](const Candidate& c) {
-           return c.kind == RegionKind::person_like && is_of(c.box);
-         });
-}
-
 double PersonVerifier::share_on_tracks(const Box& box) const {
   double share = 0;
   for (const Candidate& each : candidates_) share = std::max(share, share_within(box, each.box));
@@ -250,74 +227,6 @@ std::optional<PersonVerifier::Look> PersonVerifier::choose() {
   for (Person& each : people_)
     if (share_within(pictures_.seen(each.box()), seen) > 0.8) each.since_look = 0;
   return Look{*region, pictures_.number()};
-}
-
-// Fills found_ with one detection a person, but for those who are higher or lower than people are where they stand. Who
-// certainly is one teaches that all the same: the camera may look at other ground than before.
-void PersonVerifier::take_persons(std::span<const PersonDetection> hits, double threshold) {
-  found_.assign(hits.begin(), hits.end());
-  merge_hits(found_, threshold);
-  for (const PersonDetection& person : found_)
-    if (person.score >= p_.line_certain * threshold) line_.learn(person.box, p_);
-  found_.clear();
-  std::ranges::copy_if(hits, std::back_inserter(found_), [&](const PersonDetection& hit) {
-    return line_.judge(hit.box, p_) != HeightLine::Fit::contradicts;
-  });
-  merge_hits(found_, threshold);
-}
-
-void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> hits, double threshold,
-                           double certain) {
-  if (!pictures_.holds(look.frame)) return;
-  take_persons(hits, threshold);
-  const auto confidence = [&](double score) {
-    return std::clamp(0.5 + 0.5 * (score - threshold) / std::max(certain - threshold, 1e-9), 0.0, 1.0);
-  };
-  const std::size_t before = people_.size();
-  hit_.assign(before, 0);
-  for (const PersonDetection& detection : found_) {
-    Person next;
-    next.begin(detection.box, look.frame, pictures_, p_);
-    // Background is no person: something moves there, or the person has moved.
-    const bool supported = is_supported(next.box());
-    Person* same = nullptr;
-    double best = p_.same;
-    for (std::size_t i = 0; i < before; ++i) {
-      const Box& then = people_[i].box_at(look.frame);
-      const double shared = hit_[i] ? 0 : intersection_over_union(then, detection.box);
-      if (shared >= best) best = shared, same = &people_[i];
-    }
-    if (same) {
-      hit_[same - people_.data()] = 1;
-      const Box& track = same->track_boxes[look.frame % PictureHistory::kKept];
-      if (track.area() > 0)
-        same->agreed = intersection_over_union(track, detection.box) >= p_.agrees ? same->agreed + 1 : 0;
-      same->correct(detection.box, look.frame, pictures_, p_);
-      same->evidence = std::min(same->evidence + 1, p_.most_evidence), same->missed = false;
-      same->confidence += 0.5 * (confidence(detection.score) - same->confidence);
-      if (same->moved() || supported) same->since_seen = 0;
-    } else if (supported && !is_part(next.box())) {
-      next.evidence = 1, next.confidence = confidence(detection.score);
-      next.sure =
-          share_on_tracks(next.box()) >= p_.on_track || detection.score >= p_.line_certain * threshold;
-      people_.push_back(next);
-    }
-  }
-  const LookRegion& r = look.region;
-  const Box seen{double(r.x), double(r.y), double(r.width), double(r.height)};
-  for (std::size_t i = 0; i < before; ++i)
-    if (!hit_[i] && share_within(pictures_.seen(people_[i].box()), seen) > 0.8 && people_[i].age > 0)
-      people_[i].evidence -= 1, people_[i].missed = true;
-  forget_if([](const Person& person) { return person.evidence <= 0; });
-  bind();
-  for (const Candidate& each : candidates_) {
-    if (share_within(each.box, seen) < 0.8) continue;
-    bool explained = false;
-    for (const Person& person : people_)
-      explained = explained || person.track == each.id || share_within(person.box(), each.box) >= p_.inside;
-    TrackRecord& own = record(each.id);
-    own.refuted = explained ? 0 : own.refuted + 1;
-  }
 }
 
 std::span<const VerifiedRegion> PersonVerifier::result() {

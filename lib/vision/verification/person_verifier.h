@@ -56,14 +56,17 @@ class PersonVerifier {
   static constexpr std::uint32_t kFirstOwn = 1'000'001;
 
   void reset();
+  // The score down to which hits are of use: see VerificationParameters::weak.
+  double least_score(double threshold) const { return p_.weak * threshold; }
   // The next frame. picture: its luma, reduced (any size, the same in every frame of a stream); motion: frame k-1 to k
   // in pixels of the frame; seconds: since frame k-1, > 0.
   void update(GrayView picture, Size frame, const Transform& motion, double seconds,
               std::span<const Candidate> candidates);
   // Where the detector is to look in the present frame, the most doubtful first; nullopt: nowhere.
   std::optional<Look> choose();
-  // Takes in what a look showed, up to PictureHistory::kKept frames later: every hit, boxes in pixels of the frame.
-  // threshold: the least score of a hit; certain: the score that counts as certain.
+  // Takes in what a look showed, up to PictureHistory::kKept frames later: every hit down to least_score(threshold),
+  // boxes in pixels of the frame. threshold: the score from which on a hit shows a person wherever it is; certain: the
+  // score that counts as certain.
   void apply(const Look& look, std::span<const PersonDetection> hits, double threshold, double certain);
   // What is published for the present frame: persons, and the candidates that they do not replace. Valid until the next
   // call.
@@ -79,9 +82,10 @@ class PersonVerifier {
     int agreed = 0;
     std::array<Box, PictureHistory::kKept> track_boxes{};  // empty: none was bound
     bool missed = false;                                   // by the last look at its place
-    bool sure = false;  // a track has been there, or the detector was certain
+    bool weak = false;                                     // found first by a detection below the threshold
+    bool sure = false;  // a track has been there, or the detector was certain, and not weak
     // Without a track of its own, and missed, it may have been drawn away from the person: it waits for a further look.
-    // So does who was found once, not certainly, where only the picture changed.
+    // So does who was found once, weakly, or not certainly and where only the picture changed.
     bool is_shown() const { return candidate >= 0 || (!missed && (sure || looks() > 1)); }
   };
   // Somebody whom looks do not find any more, who may be hidden: carried on by the last velocity.
@@ -107,6 +111,12 @@ class PersonVerifier {
   bool is_owned(std::uint32_t id) const;
   void take_persons(std::span<const PersonDetection> hits, double threshold);
   bool is_part(const Box& box) const;
+  bool is_covered(const Person& person, std::uint64_t frame) const;
+  bool is_absorbed(std::size_t i) const;
+  Person* shown_in(const Box& box, std::uint64_t frame, std::size_t known);
+  void confirm(Person& person, const PersonDetection& found, std::uint64_t frame, double confidence);
+  void add(const PersonDetection& found, std::uint64_t frame, double confidence, double threshold);
+  void miss(const Box& seen, std::uint64_t frame, std::size_t known);
   double share_on_tracks(const Box& box) const;
   bool is_whole(const Candidate& c, const Person& person) const;
   void bind(Person& person, std::size_t candidate);
@@ -118,7 +128,7 @@ class PersonVerifier {
   VerificationParameters p_;
   ChangedPlaces changes_;
   HeightLine line_;
-  std::vector<PersonDetection> found_;
+  std::vector<PersonDetection> found_, weak_;
   std::vector<Box> hidden_;
   std::vector<Person> people_;
   std::vector<Lost> lost_;
@@ -131,5 +141,13 @@ class PersonVerifier {
   std::uint32_t next_own_ = kFirstOwn;
   double seconds_ = 0;
 };
+
+template <typename Condition>
+void PersonVerifier::forget_if(Condition ends) {
+  for (const Person& person : people_)
+    if (ends(person) && person.id != 0 && person.looks() > 1 && lost_.size() < kMostLost)
+      lost_.push_back({person.id, person.box(), person.velocity(), person.age, 0});
+  std::erase_if(people_, ends);
+}
 
 }  // namespace cerberus::vision

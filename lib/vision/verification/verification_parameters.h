@@ -15,11 +15,16 @@ struct VerificationParameters {
   double reach_known = 0.015;  // the same of a person whose velocity two looks have shown; a pixel at least
   double whole = 0.99;         // share of a person that is in the picture: less, and the edge cuts it
   double inertia = 0.7;        // of the velocity that stays from one picture to the next
+  // The first velocity: pictures before and after the first look that are compared, and the grey levels from which on a
+  // pixel counts as hidden. measured: MOTA on PETS09-S2L1 is .748 without, .754 with (docs/quality.md).
+  int velocity_frames = 4;
+  int hidden_difference = 30;
 
   // Detections and persons. Intersections over unions.
-  double same = 0.4;      // a detection is of the person
-  double bound = 0.5;     // a track is of the person,
-  double unbound = 0.35;  // and stays so down to this,
+  double same = 0.3;         // a detection is of the person. swept: docs/quality.md, .3 and .4;
+  double same_height = 0.3;  // logarithm of the heights' ratio up to which it may be. swept: docs/quality.md
+  double bound = 0.5;        // a track is of the person,
+  double unbound = 0.35;     // and stays so down to this,
   double unbound_whole =
       0.1;  // or this where the track is as high and wide as the person: that one was lost in the picture
   double agrees = 0.6;  // a look shows the person where the track is,
@@ -29,7 +34,15 @@ struct VerificationParameters {
   double part =
       0.45;  // share of a smaller detection in a person, or in a person-like track: it is a part of it,
   double part_height = 0.75;  // if it is lower than this share of its height
-  double on_track = 0.3;      // share of a detection that lies on tracks: else it is background
+  double absorbed = 0.6;      // the same share for a person who is known and whom a look does not show
+  // Share of a person that a nearer one hides: then a look that does not show the person says nothing, up to
+  // `covered_longest` s after the last one that did.
+  double covers = 0.5, covered_longest = 1;
+  double on_track = 0.3;  // share of a detection that lies on tracks: else it is background
+  // Share of the threshold. A detection below the threshold counts where it shows a person who is known, or one who is as
+  // high as people are there. swept: docs/quality.md, .55 to 1.
+  double weak = 0.65;
+  double certain = 1.3;  // times the threshold: one look is enough where only the picture changed
 
   double place_gain = 0.7, size_gain = 0.4;  // of a detection, against the box that was followed
   double velocity_gain = 0.5;                // of the velocity between the last two detections
@@ -42,7 +55,6 @@ struct VerificationParameters {
   int line_least = 6;           // samples: with fewer nothing is known
   double line_doubt = 0.1;      // standard deviation of the line: where it is larger nothing is known
   double line_tolerance = 0.2;  // logarithm of a height over the line's that a person may have
-  double line_certain = 1.3;    // in thresholds: the score of a detection that teaches
 
   // Evidence for a person, in detections.
   double most_evidence = 2;
@@ -62,7 +74,8 @@ struct VerificationParameters {
   double covered = 0.4;  // of the track that persons cover: it is replaced; less, and it is a group
 
   // Places that have changed (changed_places.cpp), where the camera stands. On the reduced picture.
-  int change_frames = 6;         // to the picture that is compared. Derived: people walk on by a cell
+  int change_frames = 6;         // to the picture that is compared. Derived: people walk on by a cell;
+  int least_change_frames = 2;   // when the scene begins
   double least_change = 8;       // grey levels: mean difference of a cell,
   double change_over_noise = 3;  // and in means of the picture's middle cell
   double least_place = 0.12;     // of the picture's height: lower places are not looked at
@@ -73,7 +86,8 @@ struct VerificationParameters {
 
   // Where to look. A look's region is scaled so that a person in the most doubtful box is `look_height` pixels high.
   double look_height = 85;  // Derived: 83 is the least that the Daimler detector sees
-  double in_group = 0.5;    // height of a person in a box that holds several, or things: a share of the box's
+  // Height of a person in a box that holds several, or things: a share of the box's. swept: docs/quality.md, .6 to .7.
+  double in_group = 0.65;
   double side_margin =
       0.35;  // of the box's height, left and right: the detector's window is wider than a person
   double top_margin = 0.14;  // of the box's height, above and below

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a look shows: persons who are known, new ones, and persons whom it should have shown and does not.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "vision/verification/person_verifier.h"
+
+namespace cerberus::vision {
+
+namespace {
+
+constexpr double kSamePlace = 0.4;  // intersection over union of two detections that are one
+
+}  // namespace
+
+// Somebody nearer hides the person from the detector.
+bool PersonVerifier::is_covered(const Person& person, std::uint64_t frame) const {
+  if (person.looks() < 2 || person.since_seen >= p_.covered_longest) return false;
+  const Box& box = person.box_at(frame);
+  return std::ranges::any_of(people_, [&](const Person& other) {
+    const Box& front = other.box_at(frame);
+    return &other != &person && front.bottom() > box.bottom() && share_within(box, front) >= p_.covers;
+  });
+}
+
+// Legs, or a torso, that look like a smaller person.
+bool PersonVerifier::is_part(const Box& box) const {
+  const auto is_of = [&](const Box& whole) {
+    return box.height < p_.part_height * whole.height && share_within(box, whole) >= p_.part;
+  };
+  return std::ranges::any_of(people_, [&](const Person& q) { return is_of(q.box()); }) ||
+         std::ranges::any_of(candidates_, [&](const Candidate& c) {
+           return c.kind == RegionKind::person_like && is_of(c.box);
+         });
+}
+
+// The look shows the whole of which this person was a part.
+bool PersonVerifier::is_absorbed(std::size_t i) const {
+  const Box& box = people_[i].box();
+  for (std::size_t k = 0; k < people_.size(); ++k) {
+    const bool shown = k >= hit_.size() || hit_[k];
+    const Box& whole = people_[k].box();
+    if (k != i && shown && box.height < p_.part_height * whole.height &&
+        share_within(box, whole) >= p_.absorbed)
+      return true;
+  }
+  return false;
+}
+
+// Fills found_ with one detection a person: those above the threshold, and weaker ones that are as high as people are
+// where they stand; but none that is higher or lower. Every detection above the threshold teaches the line of the heights
+// all the same: the camera may look at other ground than before. weak_: of the others those at places of which no
+// height is known, which can only show persons who are known (a second pass with weak detections, as in Y. Zhang et al.,
+// "ByteTrack", ECCV 2022).
+void PersonVerifier::take_persons(std::span<const PersonDetection> hits, double threshold) {
+  const auto take = [&](std::vector<PersonDetection>& to, double floor, auto condition) {
+    to.clear();
+    std::ranges::copy_if(hits, std::back_inserter(to), condition);
+    merge_hits(to, floor);
+  };
+  const auto is_strong = [threshold](const PersonDetection& hit) { return hit.score >= threshold; };
+  take(found_, threshold, is_strong);
+  for (const PersonDetection& person : found_) line_.learn(person.box, p_);
+  const double floor = least_score(threshold);
+  take(found_, floor, [&](const PersonDetection& hit) {
+    const HeightLine::Fit fit = line_.judge(hit.box, p_);
+    return fit == HeightLine::Fit::fits || (fit == HeightLine::Fit::unknown && is_strong(hit));
+  });
+  take(weak_, floor,
+       [&](const PersonDetection& hit) { return line_.judge(hit.box, p_) == HeightLine::Fit::unknown; });
+  std::erase_if(weak_, [&](const PersonDetection& hit) {
+    return std::ranges::any_of(found_, [&](const PersonDetection& other) {
+      return intersection_over_union(hit.box, other.box) > kSamePlace;
+    });
+  });
+}
+
+// The person, of the first `known`, whom a look at this frame shows in this box; nullptr: none of those whom it has not
+// shown yet.
+PersonVerifier::Person* PersonVerifier::shown_in(const Box& box, std::uint64_t frame, std::size_t known) {
+  Person* same = nullptr;
+  double best = p_.same;
+  for (std::size_t i = 0; i < known; ++i) {
+    const Box& then = people_[i].box_at(frame);
+    if (hit_[i] || std::abs(std::log(then.height / box.height)) > p_.same_height) continue;
+    const double shared = intersection_over_union(then, box);
+    if (shared >= best) best = shared, same = &people_[i];
+  }
+  return same;
+}
+
+void PersonVerifier::confirm(Person& person, const PersonDetection& found, std::uint64_t frame,
+                             double confidence) {
+  hit_[static_cast<std::size_t>(&person - people_.data())] = 1;
+  const Box& track = person.track_boxes[frame % PictureHistory::kKept];
+  if (track.area() > 0)
+    person.agreed = intersection_over_union(track, found.box) >= p_.agrees ? person.agreed + 1 : 0;
+  person.correct(found.box, frame, pictures_, p_);
+  person.evidence = std::min(person.evidence + 1, p_.most_evidence), person.missed = false;
+  person.confidence += 0.5 * (confidence - person.confidence);
+  if (person.moved() || is_supported(found.box)) person.since_seen = 0;
+}
+
+// Somebody new, where something moves that is no part of a person who is known: background is no person.
+void PersonVerifier::add(const PersonDetection& found, std::uint64_t frame, double confidence,
+                         double threshold) {
+  Person person;
+  person.begin(found.box, frame, pictures_, p_);
+  if (!is_supported(person.box()) || is_part(person.box())) return;
+  person.evidence = 1, person.confidence = confidence;
+  person.weak = found.score < threshold;
+  person.sure =
+      !person.weak && (share_on_tracks(person.box()) >= p_.on_track || found.score >= p_.certain * threshold);
+  people_.push_back(person);
+}
+
+// Persons in the region of the look whom it does not show, though nobody hides them.
+void PersonVerifier::miss(const Box& seen, std::uint64_t frame, std::size_t known) {
+  for (std::size_t i = 0; i < known; ++i) {
+    Person& person = people_[i];
+    if (hit_[i]) continue;
+    if (is_absorbed(i))
+      person.evidence = 0;
+    else if (person.age > 0 && share_within(pictures_.seen(person.box()), seen) > 0.8 &&
+             !is_covered(person, frame))
+      person.evidence -= 1, person.missed = true;
+  }
+  forget_if([](const Person& person) { return person.evidence <= 0; });
+}
+
+void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> hits, double threshold,
+                           double certain) {
+  if (!pictures_.holds(look.frame)) return;
+  take_persons(hits, threshold);
+  const auto confidence = [&](double score) {
+    return std::clamp(0.5 + 0.5 * (score - threshold) / std::max(certain - threshold, 1e-9), 0.0, 1.0);
+  };
+  const std::size_t known = people_.size();
+  hit_.assign(known, 0);
+  for (const PersonDetection& found : found_) {
+    if (Person* same = shown_in(found.box, look.frame, known))
+      confirm(*same, found, look.frame, confidence(found.score));
+    else
+      add(found, look.frame, confidence(found.score), threshold);
+  }
+  for (const PersonDetection& found : weak_)
+    if (Person* same = shown_in(found.box, look.frame, known))
+      confirm(*same, found, look.frame, confidence(found.score));
+  const LookRegion& r = look.region;
+  const Box seen{double(r.x), double(r.y), double(r.width), double(r.height)};
+  miss(seen, look.frame, known);
+  bind();
+  for (const Candidate& each : candidates_) {
+    if (share_within(each.box, seen) < 0.8) continue;
+    bool explained = false;
+    for (const Person& person : people_)
+      explained = explained || person.track == each.id || share_within(person.box(), each.box) >= p_.inside;
+    TrackRecord& own = record(each.id);
+    own.refuted = explained ? 0 : own.refuted + 1;
+  }
+}
+
+}  // namespace cerberus::vision
