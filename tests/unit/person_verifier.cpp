@@ -97,6 +97,29 @@ START_TEST(the_first_look_finds_the_velocity_in_the_pictures_around_it) {
 }
 END_TEST
 
+// Of a patch of 8 x 8 the left half differs by 200, the right half by 10; a shift by more than half of it out of the
+// picture leaves too little.
+START_TEST(a_pixel_that_differs_much_counts_as_one_that_is_hidden) {
+  Image<std::uint8_t> before({32, 32}), now({32, 32});
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) before.view().at(x, y) = 20, now.view().at(x, y) = x < 14 ? 220 : 30;
+  const auto difference = patch_difference(before.view(), now.view(), {10, 10, 8, 8}, {0, 0}, 30);
+  ck_assert(difference.has_value());
+  ck_assert_double_eq_tol(*difference, (30 + 10) / 2.0, 1e-9);
+  ck_assert_double_eq_tol(*patch_difference(before.view(), now.view(), {10, 10, 8, 8}, {4, 0}, 30), 10, 1e-9);
+  ck_assert(!patch_difference(before.view(), now.view(), {10, 10, 8, 8}, {-15, 0}, 30));
+}
+END_TEST
+
+START_TEST(the_third_frame_of_a_scene_shows_what_moves) {
+  Rig rig;
+  for (int n = 0; n < 3; ++n) {
+    rig.frame({person_at(300 + 12 * n)}, {});
+    ck_assert(rig.verifier.choose().has_value() == (n == 2));
+  }
+}
+END_TEST
+
 START_TEST(hits_of_one_person_become_their_weighted_mean_and_parts_of_it_are_dropped) {
   // Weights score - 1: 2 and 1. The third lies in the first; the fourth stands apart.
   std::vector<PersonDetection> hits{
@@ -422,7 +445,8 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "person_verifier",
-      {the_first_look_finds_the_velocity_in_the_pictures_around_it,
+      {a_pixel_that_differs_much_counts_as_one_that_is_hidden, the_third_frame_of_a_scene_shows_what_moves,
+       the_first_look_finds_the_velocity_in_the_pictures_around_it,
        hits_of_one_person_become_their_weighted_mean_and_parts_of_it_are_dropped,
        a_patch_is_found_where_it_went_and_between_pixels,
        the_most_doubtful_box_is_looked_at_with_neighbours_that_fit,
