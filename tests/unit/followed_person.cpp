@@ -259,7 +259,7 @@ START_TEST(a_weak_hit_shows_a_new_person_only_where_it_is_as_high_as_people_are_
 END_TEST
 
 // Two walk by, 6 pixels from look to look; the nearer one's feet are lower. Three looks do not show the other one, and
-// three more a second later.
+// more than a second of looks.
 START_TEST(who_is_hidden_by_a_nearer_person_is_not_refuted_for_a_second) {
   for (const bool hidden : {true, false}) {
     Rig rig;
@@ -279,6 +279,23 @@ START_TEST(who_is_hidden_by_a_nearer_person_is_not_refuted_for_a_second) {
 }
 END_TEST
 
+// Farther away, of .57 of the nearer one's height, and as high as people are there: no part of the other.
+START_TEST(who_is_small_because_farther_away_is_no_part_of_the_nearer_person) {
+  Rig rig;
+  for (const double foot : {260, 270, 275, 280, 285, 288, 265, 330, 340, 350})
+    rig.look({{standing(foot), 3}});
+  for (int n = 0; n < 3; ++n) rig.look({});
+  const Box far = standing(240);  // 112 high
+  Box near = standing(345);       // 196
+  near.x = far.x + far.width * 0.3;
+  for (int n = 0; n < 3; ++n) rig.look({{far, 3}});
+  const auto persons = [&] { return std::ranges::count_if(rig.verifier.result(), &VerifiedRegion::person); };
+  ck_assert_int_eq(persons(), 1);
+  for (int n = 0; n < 3; ++n) rig.look({{near, 3}});
+  ck_assert_int_eq(persons(), 2);
+}
+END_TEST
+
 START_TEST(a_part_that_was_taken_for_a_person_ends_when_a_look_shows_the_whole) {
   Rig rig;
   const Box head_and_trunk{205, 105, 45, 100}, whole{200, 100, 70, 190};
@@ -291,7 +308,7 @@ START_TEST(a_part_that_was_taken_for_a_person_ends_when_a_look_shows_the_whole) 
 }
 END_TEST
 
-START_TEST(a_detection_of_another_height_is_another_person) {
+START_TEST(a_detection_of_another_height_does_not_show_the_person) {
   Rig rig;
   rig.look({{Box{200, 90, 70, 190}, 3}});
   rig.look({{Box{200, 90, 70, 190}, 3}});
@@ -313,6 +330,7 @@ int main() {
        a_weak_hit_shows_a_person_who_is_known,
        a_weak_hit_shows_a_new_person_only_where_it_is_as_high_as_people_are_and_in_its_second_look,
        who_is_hidden_by_a_nearer_person_is_not_refuted_for_a_second,
+       who_is_small_because_farther_away_is_no_part_of_the_nearer_person,
        a_part_that_was_taken_for_a_person_ends_when_a_look_shows_the_whole,
-       a_detection_of_another_height_is_another_person});
+       a_detection_of_another_height_does_not_show_the_person});
 }

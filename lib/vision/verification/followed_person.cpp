@@ -56,9 +56,11 @@ void FollowedPerson::keep(const PictureHistory& pictures) {
 
 // The velocity with which the pictures around frame `number` look most alike at the person, camera motion taken out.
 // Several pictures before and after it count at once: somebody who passes hides the person in some of them only, and a
-// pixel that differs much counts as hidden. False: there are too few pictures.
+// pixel that differs much counts as hidden. False: the pictures say nothing, as there are too few, the picture's edge cuts
+// the person, or every velocity fits alike.
 bool FollowedPerson::find_velocity(std::uint64_t number, const PictureHistory& pictures,
                                    const VerificationParameters& p) {
+  if (pictures.seen(box_).area() <= p.whole * box_.area()) return false;
   struct Other {
     GrayView picture;
     Point camera;  // reduced pixels that the camera's motion shifts the person, from frame `number`
@@ -94,8 +96,9 @@ bool FollowedPerson::find_velocity(std::uint64_t number, const PictureHistory& p
   };
   const int reach = static_cast<int>(std::ceil(p.reach * pictures.reduced(box_).height));
   Point best;
-  double least = difference(best);
-  for (const double step : {1.0, 0.5, 0.25}) {  // reduced pixels a frame
+  double least = difference(best), most_different = least;
+  // Reduced pixels a frame. People go up and down the picture slowly: a pixel is 25 a second.
+  for (const double step : {1.0, 0.5, 0.25}) {
     const int across = step == 1 ? reach : 1;
     const Point from = best;
     for (int x = -across; x <= across; ++x)
@@ -103,8 +106,11 @@ bool FollowedPerson::find_velocity(std::uint64_t number, const PictureHistory& p
         const Point v{from.x + step * x, from.y + step * y};
         const double d = difference(v);
         if (d < least) least = d, best = v;
+        most_different = std::max(most_different, d);
       }
   }
+  constexpr double kAlike = 1;  // grey level a pixel and picture: noise
+  if (most_different - least < kAlike * static_cast<double>(n)) return false;
   velocity_ = {best.x / pictures.across(), best.y / pictures.down()};
   return true;
 }
@@ -118,7 +124,7 @@ void FollowedPerson::begin(const Box& found, std::uint64_t number, const Picture
   for (std::uint64_t n = number + 1; n <= pictures.number(); ++n) follow(n, pictures, p);
 }
 
-// Two looks show how fast the person goes. The picture then only corrects that a little, because whoever passes in front
+// Two looks, or the pictures around the first one, show how fast the person goes. The picture then only corrects that a little, because whoever passes in front
 // or behind draws the comparison away; until then it is the picture that says so.
 void FollowedPerson::follow(std::uint64_t to, const PictureHistory& pictures,
                             const VerificationParameters& p) {

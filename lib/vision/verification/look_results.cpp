@@ -10,18 +10,31 @@ namespace cerberus::vision {
 
 namespace {
 
-constexpr double kSamePlace = 0.4;  // intersection over union of two detections that are one
+// Two detections that are one: intersection over union, and share of the smaller that lies in the larger; as merge_hits()
+// has them.
+constexpr double kSamePlace = 0.4, kWithin = 0.6;
+// Share of a box that lies in a look's region: less, and the look says nothing of it.
+constexpr double kInLook = 0.8;
 
 }  // namespace
 
-// Somebody nearer hides the person from the detector.
-bool PersonVerifier::is_covered(const Person& person, std::uint64_t frame) const {
+// The look shows this person.
+bool PersonVerifier::is_shown_by_look(std::size_t i) const {
+  return i >= hit_.size() || hit_[i];
+}
+
+// Somebody nearer, whom the look shows, hides this person from the detector.
+bool PersonVerifier::is_covered(std::size_t i, std::uint64_t frame) const {
+  const Person& person = people_[i];
   if (person.looks() < 2 || person.since_seen >= p_.covered_longest) return false;
   const Box& box = person.box_at(frame);
-  return std::ranges::any_of(people_, [&](const Person& other) {
-    const Box& front = other.box_at(frame);
-    return &other != &person && front.bottom() > box.bottom() && share_within(box, front) >= p_.covers;
-  });
+  for (std::size_t k = 0; k < people_.size(); ++k) {
+    const Box& front = people_[k].box_at(frame);
+    if (k != i && is_shown_by_look(k) && front.bottom() > box.bottom() &&
+        share_within(box, front) >= p_.covers)
+      return true;
+  }
+  return false;
 }
 
 // Legs, or a torso, that look like a smaller person.
@@ -35,24 +48,25 @@ bool PersonVerifier::is_part(const Box& box) const {
          });
 }
 
-// The look shows the whole of which this person was a part.
+// The look shows the whole of which this person was a part. Whoever is as high as people are where the feet are is no
+// part, but farther away.
 bool PersonVerifier::is_absorbed(std::size_t i) const {
   const Box& box = people_[i].box();
+  if (line_.judge(box, p_) == HeightLine::Fit::fits) return false;
   for (std::size_t k = 0; k < people_.size(); ++k) {
-    const bool shown = k >= hit_.size() || hit_[k];
     const Box& whole = people_[k].box();
-    if (k != i && shown && box.height < p_.part_height * whole.height &&
+    if (k != i && is_shown_by_look(k) && !people_[k].weak && box.height < p_.part_height * whole.height &&
         share_within(box, whole) >= p_.absorbed)
       return true;
   }
   return false;
 }
 
-// Fills found_ with one detection a person: those above the threshold, and weaker ones that are as high as people are
-// where they stand; but none that is higher or lower. Every detection above the threshold teaches the line of the heights
-// all the same: the camera may look at other ground than before. weak_: of the others those at places of which no
-// height is known, which can only show persons who are known (a second pass with weak detections, as in Y. Zhang et al.,
-// "ByteTrack", ECCV 2022).
+// Fills found_ and weak_ with one detection a person. found_: those above the threshold, and weaker ones that are as high
+// as people are where they stand; but none that is higher or lower. weak_: those at places of unknown height that are in
+// none of found_'s boxes; they can only confirm persons who are known (a second pass with weak detections, as in Y. Zhang
+// et al., "ByteTrack", ECCV 2022). Every detection above the threshold where something moves teaches the line of the
+// heights, even where it contradicts: the camera may look at other ground than before.
 void PersonVerifier::take_persons(std::span<const PersonDetection> hits, double threshold) {
   const auto take = [&](std::vector<PersonDetection>& to, double floor, auto condition) {
     to.clear();
@@ -61,7 +75,8 @@ void PersonVerifier::take_persons(std::span<const PersonDetection> hits, double 
   };
   const auto is_strong = [threshold](const PersonDetection& hit) { return hit.score >= threshold; };
   take(found_, threshold, is_strong);
-  for (const PersonDetection& person : found_) line_.learn(person.box, p_);
+  for (const PersonDetection& person : found_)
+    if (is_supported(person.box)) line_.learn(person.box, p_);
   const double floor = least_score(threshold);
   take(found_, floor, [&](const PersonDetection& hit) {
     const HeightLine::Fit fit = line_.judge(hit.box, p_);
@@ -71,7 +86,8 @@ void PersonVerifier::take_persons(std::span<const PersonDetection> hits, double 
        [&](const PersonDetection& hit) { return line_.judge(hit.box, p_) == HeightLine::Fit::unknown; });
   std::erase_if(weak_, [&](const PersonDetection& hit) {
     return std::ranges::any_of(found_, [&](const PersonDetection& other) {
-      return intersection_over_union(hit.box, other.box) > kSamePlace;
+      return intersection_over_union(hit.box, other.box) > kSamePlace ||
+             share_within(hit.box, other.box) >= kWithin;
     });
   });
 }
@@ -105,13 +121,13 @@ void PersonVerifier::confirm(Person& person, const PersonDetection& found, std::
 // Somebody new, where something moves that is no part of a person who is known: background is no person.
 void PersonVerifier::add(const PersonDetection& found, std::uint64_t frame, double confidence,
                          double threshold) {
+  if (!is_supported(found.box) || is_part(found.box)) return;
   Person person;
   person.begin(found.box, frame, pictures_, p_);
-  if (!is_supported(person.box()) || is_part(person.box())) return;
   person.evidence = 1, person.confidence = confidence;
   person.weak = found.score < threshold;
   person.sure =
-      !person.weak && (share_on_tracks(person.box()) >= p_.on_track || found.score >= p_.certain * threshold);
+      !person.weak && (share_on_tracks(person.box()) >= p_.on_track || found.score >= p_.sure_at * threshold);
   people_.push_back(person);
 }
 
@@ -122,8 +138,8 @@ void PersonVerifier::miss(const Box& seen, std::uint64_t frame, std::size_t know
     if (hit_[i]) continue;
     if (is_absorbed(i))
       person.evidence = 0;
-    else if (person.age > 0 && share_within(pictures_.seen(person.box()), seen) > 0.8 &&
-             !is_covered(person, frame))
+    else if (person.age > 0 && share_within(pictures_.seen(person.box()), seen) > kInLook &&
+             !is_covered(i, frame))
       person.evidence -= 1, person.missed = true;
   }
   forget_if([](const Person& person) { return person.evidence <= 0; });
@@ -152,7 +168,7 @@ void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> hi
   miss(seen, look.frame, known);
   bind();
   for (const Candidate& each : candidates_) {
-    if (share_within(each.box, seen) < 0.8) continue;
+    if (share_within(each.box, seen) < kInLook) continue;
     bool explained = false;
     for (const Person& person : people_)
       explained = explained || person.track == each.id || share_within(person.box(), each.box) >= p_.inside;

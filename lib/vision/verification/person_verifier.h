@@ -86,7 +86,10 @@ class PersonVerifier {
     bool sure = false;  // a track has been there, or the detector was certain, and not weak
     // Without a track of its own, and missed, it may have been drawn away from the person: it waits for a further look.
     // So does who was found once, weakly, or not certainly and where only the picture changed.
-    bool is_shown() const { return candidate >= 0 || (!missed && (sure || looks() > 1)); }
+    bool is_shown() const {
+      if (weak && looks() == 1) return false;
+      return candidate >= 0 || (!missed && (sure || looks() > 1));
+    }
   };
   // Somebody whom looks do not find any more, who may be hidden: carried on by the last velocity.
   struct Lost {
@@ -111,7 +114,8 @@ class PersonVerifier {
   bool is_owned(std::uint32_t id) const;
   void take_persons(std::span<const PersonDetection> hits, double threshold);
   bool is_part(const Box& box) const;
-  bool is_covered(const Person& person, std::uint64_t frame) const;
+  bool is_shown_by_look(std::size_t i) const;
+  bool is_covered(std::size_t i, std::uint64_t frame) const;
   bool is_absorbed(std::size_t i) const;
   Person* shown_in(const Box& box, std::uint64_t frame, std::size_t known);
   void confirm(Person& person, const PersonDetection& found, std::uint64_t frame, double confidence);

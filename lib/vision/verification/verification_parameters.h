@@ -42,7 +42,8 @@ struct VerificationParameters {
   // Share of the threshold. A detection below the threshold counts where it shows a person who is known, or one who is as
   // high as people are there. swept: docs/quality.md, .55 to 1.
   double weak = 0.65;
-  double certain = 1.3;  // times the threshold: one look is enough where only the picture changed
+  double sure_at =
+      1.3;  // times the threshold: one look is enough where only the picture changed. swept: docs/quality.md
 
   double place_gain = 0.7, size_gain = 0.4;  // of a detection, against the box that was followed
   double velocity_gain = 0.5;                // of the velocity between the last two detections
