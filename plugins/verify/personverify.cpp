@@ -17,9 +17,10 @@
  * Between two looks of the detector a person goes on as fast as the looks have shown, or with a track that three looks in a
  * row have found right. One without a track whom the last look at the place missed is left out until a look shows the
  * person again, and so is one whom a single look shows, without certainty, where only the picture changed; who is found
- * again within 3 s keeps the identity. While a person has a track's identity elsewhere, that
- * track is left out. The detector's hits teach how high people are where they stand, and what is much higher or lower
- * is no person.
+ * again within 3 s keeps the identity. Somebody nearer who hides the person refutes nothing for a second. While a person
+ * has a track's identity elsewhere, that track is left out. The detector's hits teach how high people are where they
+ * stand: what is much higher or lower is no person, and hits down to .65 of `threshold` count where they are as high, or
+ * show somebody who is known; such a hit alone is not published yet.
  *
  * The detector is OpenCV's one for pedestrians (histograms of oriented gradients, trained on the Daimler data set):
  * upright people who are at least 24 pixels high. It costs up to 60 ms a look on one core. It does not see people who
@@ -86,7 +87,7 @@ GstStaticPadTemplate src_template =
 
 // Columns of the reduced picture in which persons are followed. Chosen: as motiondetect's.
 constexpr int kFollowedWidth = 320;
-// Running time after which a result counts where the pipeline is not live. Derived: the cost of a look. swept:
+// Running time after which a result counts where the pipeline is not live: a slow processor is waited for. swept:
 // docs/quality.md, 40 and 100 ms.
 constexpr GstClockTime kDelay = 40 * GST_MSECOND;
 // Looks a second. Derived: a slow processor takes 100 ms for one.
@@ -122,7 +123,8 @@ const cerberus::plugin::Property<Settings> kProperties[] = {
              "Looks of the detector a second of running time, all tracks together"),
     property("require", &Settings::require, require_type, "What is published"),
     property("threshold", &Settings::threshold, 0, 10,
-             "Score of a hit, at least: lower finds more people and more things that are none; 0 = 1.9 of "
+             "Score from which on a hit is a person: lower finds more people and more things that are none; "
+             "0 = 1.9 of "
              "the Daimler "
              "detector, 0.4 of a model")
         .read_at_start(),

@@ -124,8 +124,8 @@ void FollowedPerson::begin(const Box& found, std::uint64_t number, const Picture
   for (std::uint64_t n = number + 1; n <= pictures.number(); ++n) follow(n, pictures, p);
 }
 
-// Two looks, or the pictures around the first one, show how fast the person goes. The picture then only corrects that a little, because whoever passes in front
-// or behind draws the comparison away; until then it is the picture that says so.
+// Once the velocity is known, by the pictures around the first look or by two looks, the picture only corrects it a little,
+// because whoever passes in front or behind draws the comparison away. Until then the velocity is that of the picture.
 void FollowedPerson::follow(std::uint64_t to, const PictureHistory& pictures,
                             const VerificationParameters& p) {
   const GrayView before = pictures.picture(to - 1), now = pictures.picture(to);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where a person is between the looks of a detector: by the velocity that the looks have shown, and by the picture.
+// Where a person is between the looks of a detector: by the velocity that the pictures around the first look and all looks
+// since have shown, and by the picture.
 #pragma once
 
 #include <array>

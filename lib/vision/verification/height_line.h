@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // How high people are in the picture, by where their feet are: on even ground a straight line (R. Hartley,
 // A. Zisserman, "Multiple View Geometry in Computer Vision", 2nd ed., 8.7: a person's height goes with the distance of
-// the feet from the horizon). It is learnt from persons of whom the detector is certain, and turns with the camera.
+// the feet from the horizon). It is learnt from the detector's persons, most of whom must agree, and turns with the camera.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ class HeightLine {
   void reset();
   // The camera's motion from the last frame to this one, in pixels.
   void move(const Transform& motion);
-  // A person of whom the detector is certain. Pixels.
+  // A person whom the detector has found. Pixels.
   void learn(const Box& person, const VerificationParameters& p);
   Fit judge(const Box& person, const VerificationParameters& p) const;
 

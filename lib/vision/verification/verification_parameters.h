@@ -12,19 +12,22 @@ struct VerificationParameters {
   double core_width = 0.6,
          core_height = 0.8;    // part of the box that is compared: the background is at its edges
   double reach = 0.06;         // farther than this from the prediction is not searched
-  double reach_known = 0.015;  // the same of a person whose velocity two looks have shown; a pixel at least
+  double reach_known = 0.015;  // the same of a person whose velocity is known; a pixel at least
   double whole = 0.99;         // share of a person that is in the picture: less, and the edge cuts it
   double inertia = 0.7;        // of the velocity that stays from one picture to the next
-  // The first velocity: pictures before and after the first look that are compared, and the grey levels from which on a
-  // pixel counts as hidden. measured: MOTA on PETS09-S2L1 is .748 without, .754 with (docs/quality.md).
+  // The first velocity: frames before and after the first look whose pictures are compared, 12 at most; at 5 frames a
+  // second somebody who walks goes beyond `reach`, and none is found. Grey levels from which on a pixel counts as hidden,
+  // by hand. swept: docs/quality.md, 0 and 4.
   int velocity_frames = 4;
   int hidden_difference = 30;
 
   // Detections and persons. Intersections over unions.
-  double same = 0.3;         // a detection is of the person. swept: docs/quality.md, .3 and .4;
-  double same_height = 0.3;  // logarithm of the heights' ratio up to which it may be. swept: docs/quality.md
-  double bound = 0.5;        // a track is of the person,
-  double unbound = 0.35;     // and stays so down to this,
+  double same = 0.3;  // a detection is of the person. swept: docs/quality.md, .3 and .4
+  // Logarithm of the heights' ratio up to which it may be: part_height, from where on the smaller is a part. swept:
+  // docs/quality.md
+  double same_height = 0.3;
+  double bound = 0.5;     // a track is of the person,
+  double unbound = 0.35;  // and stays so down to this,
   double unbound_whole =
       0.1;  // or this where the track is as high and wide as the person: that one was lost in the picture
   double agrees = 0.6;  // a look shows the person where the track is,
@@ -36,7 +39,7 @@ struct VerificationParameters {
   double part_height = 0.75;  // if it is lower than this share of its height
   double absorbed = 0.6;      // the same share for a person who is known and whom a look does not show
   // Share of a person that a nearer one hides: then a look that does not show the person says nothing, up to
-  // `covered_longest` s after the last one that did.
+  // `covered_longest` s after the last one that did. swept: docs/quality.md, with and without.
   double covers = 0.5, covered_longest = 1;
   double on_track = 0.3;  // share of a detection that lies on tracks: else it is background
   // Share of the threshold. A detection below the threshold counts where it shows a person who is known, or one who is as
@@ -75,8 +78,9 @@ struct VerificationParameters {
   double covered = 0.4;  // of the track that persons cover: it is replaced; less, and it is a group
 
   // Places that have changed (changed_places.cpp), where the camera stands. On the reduced picture.
-  int change_frames = 6;         // to the picture that is compared. Derived: people walk on by a cell;
-  int least_change_frames = 2;   // when the scene begins
+  int change_frames = 6;  // back to the picture that is compared. Derived: people walk on by a cell
+  // Frames that a scene has before its pictures are compared. Derived: somebody who walks moves by a third of a cell.
+  int least_change_frames = 2;
   double least_change = 8;       // grey levels: mean difference of a cell,
   double change_over_noise = 3;  // and in means of the picture's middle cell
   double least_place = 0.12;     // of the picture's height: lower places are not looked at
