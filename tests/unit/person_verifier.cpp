@@ -78,7 +78,8 @@ Box person_at(double x) {
 }  // namespace
 
 // The texture of the person goes on before the look and after it, hidden by somebody who stands in half of the pictures.
-// At the picture's edge, in the first picture, and where all is grey nothing is found: the velocity is 0.
+// Where the picture's edge cuts the person, the pictures after the look are followed one by one; where all is grey the
+// velocity is 0.
 START_TEST(the_first_look_finds_the_velocity_in_the_pictures_around_it) {
   const VerificationParameters numbers;
   for (const double step : {6.0, -6.0, 5.0, 0.0}) {

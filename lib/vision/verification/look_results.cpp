@@ -10,11 +10,14 @@ namespace cerberus::vision {
 
 namespace {
 
-// Two detections that are one: intersection over union, and share of the smaller that lies in the larger; as merge_hits()
-// has them.
+// A weak detection that another one has taken in: intersection over union, and share of it that lies in the other.
+// Derived: the limits of merge_hits().
 constexpr double kSamePlace = 0.4, kWithin = 0.6;
-// Share of a box that lies in a look's region: less, and the look says nothing of it.
-constexpr double kInLook = 0.8;
+
+// A part of a body looks like a smaller person. share: of its box that lies in that of the whole, at least.
+bool is_part_of(const Box& box, const Box& whole, double share, const VerificationParameters& p) {
+  return box.height < p.part_height * whole.height && share_within(box, whole) >= share;
+}
 
 }  // namespace
 
@@ -37,11 +40,9 @@ bool PersonVerifier::is_covered(std::size_t i, std::uint64_t frame) const {
   return false;
 }
 
-// Legs, or a torso, that look like a smaller person.
+// Legs, or a torso, of a person or a person-like track.
 bool PersonVerifier::is_part(const Box& box) const {
-  const auto is_of = [&](const Box& whole) {
-    return box.height < p_.part_height * whole.height && share_within(box, whole) >= p_.part;
-  };
+  const auto is_of = [&](const Box& whole) { return is_part_of(box, whole, p_.part, p_); };
   return std::ranges::any_of(people_, [&](const Person& q) { return is_of(q.box()); }) ||
          std::ranges::any_of(candidates_, [&](const Candidate& c) {
            return c.kind == RegionKind::person_like && is_of(c.box);
@@ -54,9 +55,8 @@ bool PersonVerifier::is_absorbed(std::size_t i) const {
   const Box& box = people_[i].box();
   if (line_.judge(box, p_) == HeightLine::Fit::fits) return false;
   for (std::size_t k = 0; k < people_.size(); ++k) {
-    const Box& whole = people_[k].box();
-    if (k != i && is_shown_by_look(k) && !people_[k].weak && box.height < p_.part_height * whole.height &&
-        share_within(box, whole) >= p_.absorbed)
+    if (k != i && is_shown_by_look(k) && !people_[k].weak &&
+        is_part_of(box, people_[k].box(), p_.absorbed, p_))
       return true;
   }
   return false;
@@ -138,7 +138,7 @@ void PersonVerifier::miss(const Box& seen, std::uint64_t frame, std::size_t know
     if (hit_[i]) continue;
     if (is_absorbed(i))
       person.evidence = 0;
-    else if (person.age > 0 && share_within(pictures_.seen(person.box()), seen) > kInLook &&
+    else if (person.age > 0 && share_within(pictures_.seen(person.box()), seen) > p_.in_look &&
              !is_covered(i, frame))
       person.evidence -= 1, person.missed = true;
   }
@@ -168,7 +168,7 @@ void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> hi
   miss(seen, look.frame, known);
   bind();
   for (const Candidate& each : candidates_) {
-    if (share_within(each.box, seen) < kInLook) continue;
+    if (share_within(each.box, seen) < p_.in_look) continue;
     bool explained = false;
     for (const Person& person : people_)
       explained = explained || person.track == each.id || share_within(person.box(), each.box) >= p_.inside;

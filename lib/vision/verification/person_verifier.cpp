@@ -223,9 +223,9 @@ std::optional<PersonVerifier::Look> PersonVerifier::choose() {
   const Box seen{double(region->x), double(region->y), double(region->width), double(region->height)};
   changes_.looked(pictures_.reduced(seen));
   for (const Candidate& each : candidates_)
-    if (share_within(each.box, seen) > 0.8) record(each.id).since_look = 0;
+    if (share_within(each.box, seen) > p_.in_look) record(each.id).since_look = 0;
   for (Person& each : people_)
-    if (share_within(pictures_.seen(each.box()), seen) > 0.8) each.since_look = 0;
+    if (share_within(pictures_.seen(each.box()), seen) > p_.in_look) each.since_look = 0;
   return Look{*region, pictures_.number()};
 }
 

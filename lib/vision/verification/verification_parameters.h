@@ -90,6 +90,7 @@ struct VerificationParameters {
   double changed = 0.3;          // of a detection, where no track is: else it is background
 
   // Where to look. A look's region is scaled so that a person in the most doubtful box is `look_height` pixels high.
+  double in_look = 0.8;  // share of a box that lies in a look's region: less, and the look says nothing of it
   double look_height = 85;  // Derived: 83 is the least that the Daimler detector sees
   // Height of a person in a box that holds several, or things: a share of the box's. swept: docs/quality.md, .6 to .7.
   double in_group = 0.65;
