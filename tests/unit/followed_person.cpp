@@ -179,18 +179,40 @@ START_TEST(who_was_hidden_for_less_than_three_seconds_keeps_the_identity) {
 }
 END_TEST
 
-START_TEST(a_person_follows_a_track_that_looks_have_found_right) {
-  for (const int looks : {3, 4}) {
+// Three looks in a row have shown the person where the track was, or there was none for .3 s.
+START_TEST(a_person_follows_a_track_that_looks_have_found_right_and_any_that_is_whole_when_nobody_looks) {
+  struct Case {
+    int looks, frames;
+    bool follows;
+  };
+  for (const Case& c : {Case{3, 5, false}, {4, 5, true}, {3, 10, true}}) {
     Rig rig;
     rig.tracks = {{.id = 4, .box = person_at(200)}};
-    for (int n = 0; n < looks; ++n) rig.look({{person_at(200), 3}});
-    for (int n = 1; n <= 5; ++n) {
+    for (int n = 0; n < c.looks; ++n) rig.look({{person_at(200), 3}});
+    for (int n = 1; n <= c.frames; ++n) {
       rig.tracks[0].box = person_at(200 + 4 * n);
       rig.frames(1);
     }
     const bool followed = rig.person()->box.x > 208;
-    ck_assert(followed == (looks == 4));
+    ck_assert(followed == c.follows);
   }
+}
+END_TEST
+
+// The surest detection is nearer to the right one of two persons, but a second one fits that person still better.
+START_TEST(detections_go_to_the_persons_whom_they_fit_best) {
+  Rig rig;
+  const auto ids = [&] {
+    std::vector<std::uint32_t> all;
+    for (const VerifiedRegion& each : rig.verifier.result())
+      if (each.person) all.push_back(each.id);
+    return all;
+  };
+  for (int n = 0; n < 2; ++n) rig.look({{person_at(200), 3}, {person_at(248), 3.2}});
+  const auto before = ids();
+  ck_assert_uint_eq(before.size(), 2);
+  rig.look({{person_at(226), 3}, {person_at(254), 2}});
+  ck_assert(ids() == before);
 }
 END_TEST
 
@@ -198,11 +220,16 @@ START_TEST(an_identity_is_published_once) {
   Rig rig;
   rig.tracks = {{.id = 4, .box = person_at(200)}};
   rig.look({{person_at(200), 3}});
+  rig.look({{person_at(200), 3}});
   ck_assert_uint_eq(rig.person()->id, 4);
   rig.tracks[0].box = person_at(500);  // the track has gone to somebody else
   rig.frames(1);
   ck_assert_uint_eq(rig.verifier.result().size(), 1);
   ck_assert_uint_eq(rig.person()->id, 4);
+  rig.look({});  // the person is left out: the track has the identity again
+  ck_assert_ptr_null(rig.person());
+  ck_assert_uint_eq(rig.verifier.result().size(), 1);
+  ck_assert_uint_eq(rig.verifier.result()[0].id, 4);
 }
 END_TEST
 
@@ -254,6 +281,7 @@ START_TEST(a_weak_hit_shows_a_new_person_only_where_it_is_as_high_as_people_are_
   rig.tracks.push_back({.id = 4, .box = standing(282)});  // a track of its own does not change that
   rig.look({{standing(282), 1.2}});
   ck_assert_ptr_null(rig.person());
+  ck_assert(std::ranges::any_of(rig.verifier.result(), [](const VerifiedRegion& r) { return r.id == 4; }));
   rig.look({{standing(282), 1.2}});
   ck_assert_ptr_nonnull(rig.person());
 }
@@ -329,7 +357,8 @@ int main() {
        the_cameras_own_turning_is_no_velocity_of_the_person, a_person_whom_the_edge_cuts_does_not_slow_down,
        heights_are_judged_by_where_the_feet_are, two_wrong_heights_do_not_bend_the_line,
        the_line_tilts_with_the_camera, who_was_hidden_for_less_than_three_seconds_keeps_the_identity,
-       a_person_follows_a_track_that_looks_have_found_right, an_identity_is_published_once,
+       a_person_follows_a_track_that_looks_have_found_right_and_any_that_is_whole_when_nobody_looks,
+       detections_go_to_the_persons_whom_they_fit_best, an_identity_is_published_once,
        a_hit_that_is_not_as_high_as_people_are_is_none, other_ground_is_learnt_anew,
        a_weak_hit_shows_a_person_who_is_known,
        a_weak_hit_shows_a_new_person_only_where_it_is_as_high_as_people_are_and_in_its_second_look,

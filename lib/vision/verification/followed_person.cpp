@@ -96,7 +96,8 @@ bool FollowedPerson::find_velocity(std::uint64_t number, const PictureHistory& p
   };
   const int reach = static_cast<int>(std::ceil(p.reach * pictures.reduced(box_).height));
   Point best;
-  double least = difference(best), most_different = least;
+  const double at_rest = difference(best);
+  double least = at_rest, most_different = at_rest;
   // Reduced pixels a frame. People go up and down the picture slowly: a pixel is 25 a second.
   for (const double step : {1.0, 0.5, 0.25}) {
     const int across = step == 1 ? reach : 1;
@@ -112,6 +113,7 @@ bool FollowedPerson::find_velocity(std::uint64_t number, const PictureHistory& p
   constexpr double kAlike = 1;  // grey level a pixel and picture: noise
   if (most_different - least < kAlike * static_cast<double>(n)) return false;
   velocity_ = {best.x / pictures.across(), best.y / pictures.down()};
+  walks_ = least < p.walking * at_rest;
   return true;
 }
 

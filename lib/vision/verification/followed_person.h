@@ -67,6 +67,8 @@ class FollowedPerson {
   int looks() const { return looks_; }
   // Has it ever been away from where it was first seen by this share of its width?
   bool moved() const { return moved_; }
+  // The pictures around the first look fit a velocity much better than rest.
+  bool walks() const { return walks_; }
 
  private:
   struct Place {
@@ -85,7 +87,7 @@ class FollowedPerson {
   int looks_ = 0;                // that showed the person
   Point look_way_;
   std::uint64_t look_number_ = 0;
-  bool moved_ = false;
+  bool moved_ = false, walks_ = false;
   std::array<Place, PictureHistory::kKept> places_;
 };
 

@@ -19,6 +19,11 @@ bool is_part_of(const Box& box, const Box& whole, double share, const Verificati
   return box.height < p.part_height * whole.height && share_within(box, whole) >= share;
 }
 
+// From .5 at the threshold to 1.
+double confidence_of(const PersonDetection& found, double threshold, double certain) {
+  return std::clamp(0.5 + 0.5 * (found.score - threshold) / std::max(certain - threshold, 1e-9), 0.0, 1.0);
+}
+
 }  // namespace
 
 // The look shows this person.
@@ -92,18 +97,34 @@ void PersonVerifier::take_persons(std::span<const PersonDetection> hits, double 
   });
 }
 
-// The person, of the first `known`, whom a look at this frame shows in this box; nullptr: none of those whom it has not
-// shown yet.
-PersonVerifier::Person* PersonVerifier::shown_in(const Box& box, std::uint64_t frame, std::size_t known) {
-  Person* same = nullptr;
-  double best = p_.same;
-  for (std::size_t i = 0; i < known; ++i) {
-    const Box& then = people_[i].box_at(frame);
-    if (hit_[i] || std::abs(std::log(then.height / box.height)) > p_.same_height) continue;
-    const double shared = intersection_over_union(then, box);
-    if (shared >= best) best = shared, same = &people_[i];
+// How well a detection of a look at this frame fits a person: intersection over union; 0: it is of nobody so high.
+double PersonVerifier::likeness(const Person& person, const Box& box, std::uint64_t frame) const {
+  const Box& then = person.box_at(frame);
+  const bool alike = std::abs(std::log(then.height / box.height)) <= p_.same_height;
+  return alike ? intersection_over_union(then, box) : 0;
+}
+
+// Gives each of the persons the detection that shows them, those first that fit best, and takes it out of found_ or weak_.
+void PersonVerifier::confirm_known(std::uint64_t frame, double threshold, double certain) {
+  struct Pair {
+    Person* person = nullptr;
+    std::vector<PersonDetection>* list = nullptr;
+    std::size_t index = 0;
+  };
+  for (;;) {
+    Pair best;
+    double most = p_.same;
+    for (auto* list : {&found_, &weak_})
+      for (std::size_t i = 0; i < list->size(); ++i)
+        for (std::size_t k = 0; k < people_.size(); ++k) {
+          const double fit = hit_[k] ? 0 : likeness(people_[k], (*list)[i].box, frame);
+          if (fit > most) most = fit, best = {&people_[k], list, i};
+        }
+    if (!best.person) return;
+    confirm(*best.person, (*best.list)[best.index], frame,
+            confidence_of((*best.list)[best.index], threshold, certain));
+    best.list->erase(best.list->begin() + static_cast<std::ptrdiff_t>(best.index));
   }
-  return same;
 }
 
 void PersonVerifier::confirm(Person& person, const PersonDetection& found, std::uint64_t frame,
@@ -126,8 +147,8 @@ void PersonVerifier::add(const PersonDetection& found, std::uint64_t frame, doub
   person.begin(found.box, frame, pictures_, p_);
   person.evidence = 1, person.confidence = confidence;
   person.weak = found.score < threshold;
-  person.sure =
-      !person.weak && (share_on_tracks(person.box()) >= p_.on_track || found.score >= p_.sure_at * threshold);
+  person.sure = !person.weak && (share_on_tracks(person.box()) >= p_.on_track || person.walks() ||
+                                 found.score >= p_.sure_at * threshold);
   people_.push_back(person);
 }
 
@@ -149,20 +170,11 @@ void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> hi
                            double certain) {
   if (!pictures_.holds(look.frame)) return;
   take_persons(hits, threshold);
-  const auto confidence = [&](double score) {
-    return std::clamp(0.5 + 0.5 * (score - threshold) / std::max(certain - threshold, 1e-9), 0.0, 1.0);
-  };
   const std::size_t known = people_.size();
   hit_.assign(known, 0);
-  for (const PersonDetection& found : found_) {
-    if (Person* same = shown_in(found.box, look.frame, known))
-      confirm(*same, found, look.frame, confidence(found.score));
-    else
-      add(found, look.frame, confidence(found.score), threshold);
-  }
-  for (const PersonDetection& found : weak_)
-    if (Person* same = shown_in(found.box, look.frame, known))
-      confirm(*same, found, look.frame, confidence(found.score));
+  confirm_known(look.frame, threshold, certain);
+  for (const PersonDetection& found : found_)
+    add(found, look.frame, confidence_of(found, threshold, certain), threshold);
   const LookRegion& r = look.region;
   const Box seen{double(r.x), double(r.y), double(r.width), double(r.height)};
   miss(seen, look.frame, known);

@@ -140,7 +140,9 @@ void PersonVerifier::bind(Person& person, std::size_t candidate) {
   const bool sure = c.state == TrackState::seen && c.kind == RegionKind::person_like;
   const bool older = person.id >= kFirstOwn && sure && record(c.id).age > person.age;
   if ((person.id == 0 || older) && !is_owned(c.id)) person.id = c.id;
-  if (person.agreed >= p_.agreed && is_whole(c, person)) {  // looks have shown that the track is right
+  // Looks have shown that the track is right, or there was none lately that could show better.
+  const bool trusted = person.agreed >= p_.agreed || person.since_look > p_.unlooked;
+  if (trusted && is_whole(c, person)) {
     const bool near = intersection_over_union(person.box(), c.box) >= p_.unbound;
     person.pull(c.box, near ? p_.track_gain : 1, p_.track_gain, pictures_, p_);
   }
@@ -241,10 +243,13 @@ std::span<const VerifiedRegion> PersonVerifier::result() {
   }
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     const Candidate& each = candidates_[i];
-    const auto is_bound = [&](const Person& person) { return person.candidate == static_cast<int>(i); };
+    // A track whose identity a person who is shown has taken along shows that person no more, and its new one is not
+    // known yet.
+    const auto replaces = [&](const Person& person) {
+      return person.is_shown() && (person.candidate == static_cast<int>(i) || person.id == each.id);
+    };
     bool group = false;
-    // A track whose identity a person has taken along shows that person no more, and its new one is not known yet.
-    if (std::ranges::any_of(people_, is_bound) || is_explained(each, group) || is_owned(each.id)) continue;
+    if (std::ranges::any_of(people_, replaces) || is_explained(each, group)) continue;
     VerifiedRegion region{
         .candidate = static_cast<int>(i), .id = each.id, .box = each.box, .kind = each.kind};
     if (group) region.kind = RegionKind::group;

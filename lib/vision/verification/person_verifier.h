@@ -83,7 +83,7 @@ class PersonVerifier {
     std::array<Box, PictureHistory::kKept> track_boxes{};  // empty: none was bound
     bool missed = false;                                   // by the last look at its place
     bool weak = false;                                     // found first by a detection below the threshold
-    bool sure = false;  // a track has been there, or the detector was certain, and not weak
+    bool sure = false;  // a track has been there, the detector was certain, or the person walks; and not weak
     // Without a track of its own, and missed, it may have been drawn away from the person: it waits for a further look.
     // So does who was found once, weakly, or not certainly and where only the picture changed.
     bool is_shown() const {
@@ -117,7 +117,8 @@ class PersonVerifier {
   bool is_shown_by_look(std::size_t i) const;
   bool is_covered(std::size_t i, std::uint64_t frame) const;
   bool is_absorbed(std::size_t i) const;
-  Person* shown_in(const Box& box, std::uint64_t frame, std::size_t known);
+  double likeness(const Person& person, const Box& box, std::uint64_t frame) const;
+  void confirm_known(std::uint64_t frame, double threshold, double certain);
   void confirm(Person& person, const PersonDetection& found, std::uint64_t frame, double confidence);
   void add(const PersonDetection& found, std::uint64_t frame, double confidence, double threshold);
   void miss(const Box& seen, std::uint64_t frame, std::size_t known);

@@ -20,6 +20,9 @@ struct VerificationParameters {
   // by hand. swept: docs/quality.md, 0 and 4.
   int velocity_frames = 4;
   int hidden_difference = 30;
+  // Share of the difference of the pictures at rest that is left at the first velocity: less, and the person walks. swept:
+  // docs/quality.md, .6 to .95.
+  double walking = 0.75;
 
   // Detections and persons. Intersections over unions.
   double same = 0.3;  // a detection is of the person. swept: docs/quality.md, .3 and .4
@@ -32,6 +35,8 @@ struct VerificationParameters {
       0.1;  // or this where the track is as high and wide as the person: that one was lost in the picture
   double agrees = 0.6;  // a look shows the person where the track is,
   int agreed = 3;       // and so often in a row before the person is drawn towards the track
+  // Or s without a look at the person. Derived: longer than the time between two looks; swept: docs/quality.md, .5.
+  double unlooked = 0.3;
   // Natural logarithms of a track's height and width over a person's: more, and it is not this person alone.
   double alike_height = 0.2, alike_width = 0.4;
   double part =
