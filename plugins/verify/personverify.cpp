@@ -14,11 +14,12 @@
  * - other tracks stay as they were, or are left out (`require=person`): `pirfusion` and `pantiltsink` behind then
  *   follow persons only.
  *
- * Between two looks of the detector a person goes on as fast as the looks have shown, or with a track that three looks in a
- * row have found right. One without a track whom the last look at the place missed is left out until a look shows the
- * person again, and so is one whom a single look shows, without certainty, where only the picture changed; who is found
- * again within 3 s keeps the identity. Somebody nearer who hides the person refutes nothing for a second. While a person
- * has a track's identity elsewhere, that track is left out. The detector's hits teach how high people are where they
+ * Between two looks of the detector a person goes on as fast as the looks have shown, or with a track of the person's size
+ * that three looks in a row have found right, or at which none was taken for .3 s. One without a track whom the last look at
+ * the place missed is left out until a look shows the person again, and so is one whom a single look shows, without
+ * certainty, where only the picture changed and nobody walks; who is found again within 3 s keeps the identity. Somebody
+ * nearer who hides the person refutes nothing for a second. While a person who is published has a track's identity
+ * elsewhere, that track is left out. The detector's hits teach how high people are where they
  * stand: what is much higher or lower is no person, and hits down to .65 of `threshold` count where they are as high, or
  * show somebody who is known; such a hit alone is not published yet.
  *
