@@ -14,14 +14,14 @@
  * - other tracks stay as they were, or are left out (`require=person`): `pirfusion` and `pantiltsink` behind then
  *   follow persons only.
  *
- * Between two looks of the detector a person goes on as fast as the looks have shown, or with a track of the person's size
- * that three looks in a row have found right, or at which none was taken for .3 s. One without a track whom the last look at
- * the place missed is left out until a look shows the person again, and so is one whom a single look shows, without
- * certainty, where only the picture changed and nobody walks; who is found again within 3 s keeps the identity. Somebody
- * nearer who hides the person refutes nothing for a second. While a person who is published has a track's identity
- * elsewhere, that track is left out. The detector's hits teach how high people are where they
- * stand: what is much higher or lower is no person, and hits down to .65 of `threshold` count where they are as high, or
- * show somebody who is known; such a hit alone is not published yet.
+ * Between two looks of the detector a person goes on as fast as the looks have shown, or with a track that three looks in a
+ * row have found right, or, once a look has left the person out, with a bound track of the person's size. One without a
+ * track whom the last look at the place missed is left out until a look shows the person again, and so is one whom a single
+ * look shows, without certainty, where only the picture changed and nobody walks; who is found again within 3 s keeps the
+ * identity. Somebody nearer who hides the person refutes nothing for a second. While a person has a track's identity
+ * elsewhere, that track is left out. The detector's hits teach how high people are where they stand: what is much higher or
+ * lower is no person, and hits down to .65 of `threshold` count where they are as high, or show somebody who is known; a
+ * track that such a hit alone shows is published as it was.
  *
  * The detector is OpenCV's one for pedestrians (histograms of oriented gradients, trained on the Daimler data set):
  * upright people who are at least 24 pixels high. It costs up to 60 ms a look on one core. It does not see people who
@@ -324,6 +324,7 @@ void take_in(State& state, GstClockTime now) {
 // The next look, where one is due, from the mapped frame.
 void look(State& state, const vision::LumaSource& source, GstClockTime now, const Settings& settings) {
   const auto period = static_cast<GstClockTime>(GST_SECOND / settings.rate);
+  state.verifier.set_period(1 / settings.rate);
   if (!GST_CLOCK_TIME_IS_VALID(state.next_look))
     state.next_look = now + static_cast<GstClockTime>(settings.phase * static_cast<double>(period));
   if (state.pending || now < state.next_look) return;

@@ -450,6 +450,7 @@ START_TEST(a_person_whom_no_track_shows_is_found_where_the_picture_changes) {
     ck_assert(look->region.y <= person.y && look->region.y + look->region.height >= person.bottom());
     rig.found(*look, {{person, 2}, {person_at(450), 3}});  // not certain; nothing changes at the second place
     ck_assert_uint_eq(rig.result().size(), walks ? 1 : 0);
+    if (walks) ck_assert_double_eq_tol(rig.result()[0].box.x, 228, 4);
     for (int n = 8; n < (walks ? 12 : 10); ++n) rig.frame({at(n)}, {});
     look = rig.verifier.choose();
     ck_assert(look.has_value());

@@ -19,12 +19,12 @@ bool is_part_of(const Box& box, const Box& whole, double share, const Verificati
   return box.height < p.part_height * whole.height && share_within(box, whole) >= share;
 }
 
-// From .5 at the threshold to 1.
-double confidence_of(const PersonDetection& found, double threshold, double certain) {
-  return std::clamp(0.5 + 0.5 * (found.score - threshold) / std::max(certain - threshold, 1e-9), 0.0, 1.0);
-}
-
 }  // namespace
+
+// .5 at the threshold, 1 where the detector is certain.
+double PersonVerifier::Scores::confidence(double score) const {
+  return std::clamp(0.5 + 0.5 * (score - threshold) / std::max(certain - threshold, 1e-9), 0.0, 1.0);
+}
 
 // The look shows this person.
 bool PersonVerifier::is_shown_by_look(std::size_t i) const {
@@ -97,58 +97,53 @@ void PersonVerifier::take_persons(std::span<const PersonDetection> hits, double 
   });
 }
 
-// How well a detection of a look at this frame fits a person: intersection over union; 0: it is of nobody so high.
+// How well a detection of a look at this frame fits a person: intersection over union; 0 if the heights differ by more than
+// `same_height`.
 double PersonVerifier::likeness(const Person& person, const Box& box, std::uint64_t frame) const {
   const Box& then = person.box_at(frame);
   const bool alike = std::abs(std::log(then.height / box.height)) <= p_.same_height;
   return alike ? intersection_over_union(then, box) : 0;
 }
 
-// Gives each of the persons the detection that shows them, those first that fit best, and takes it out of found_ or weak_.
-void PersonVerifier::confirm_known(std::uint64_t frame, double threshold, double certain) {
-  struct Pair {
-    Person* person = nullptr;
-    std::vector<PersonDetection>* list = nullptr;
-    std::size_t index = 0;
-  };
+// Each of the persons whom no detection has shown yet gets the one that fits, the best pair first, which leaves `found`.
+void PersonVerifier::confirm_known(std::vector<PersonDetection>& found, std::uint64_t frame,
+                                   const Scores& scores) {
   for (;;) {
-    Pair best;
-    double most = p_.same;
-    for (auto* list : {&found_, &weak_})
-      for (std::size_t i = 0; i < list->size(); ++i)
-        for (std::size_t k = 0; k < people_.size(); ++k) {
-          const double fit = hit_[k] ? 0 : likeness(people_[k], (*list)[i].box, frame);
-          if (fit > most) most = fit, best = {&people_[k], list, i};
-        }
-    if (!best.person) return;
-    confirm(*best.person, (*best.list)[best.index], frame,
-            confidence_of((*best.list)[best.index], threshold, certain));
-    best.list->erase(best.list->begin() + static_cast<std::ptrdiff_t>(best.index));
+    Person* same = nullptr;
+    std::size_t index = 0;
+    double best = p_.same;
+    for (std::size_t i = 0; i < found.size(); ++i)
+      for (std::size_t k = 0; k < hit_.size(); ++k) {
+        const double fit = hit_[k] ? 0 : likeness(people_[k], found[i].box, frame);
+        if (fit >= best) best = fit, same = &people_[k], index = i;
+      }
+    if (!same) return;
+    confirm(*same, found[index], frame, scores);
+    found.erase(found.begin() + static_cast<std::ptrdiff_t>(index));
   }
 }
 
 void PersonVerifier::confirm(Person& person, const PersonDetection& found, std::uint64_t frame,
-                             double confidence) {
+                             const Scores& scores) {
   hit_[static_cast<std::size_t>(&person - people_.data())] = 1;
   const Box& track = person.track_boxes[frame % PictureHistory::kKept];
   if (track.area() > 0)
     person.agreed = intersection_over_union(track, found.box) >= p_.agrees ? person.agreed + 1 : 0;
   person.correct(found.box, frame, pictures_, p_);
   person.evidence = std::min(person.evidence + 1, p_.most_evidence), person.missed = false;
-  person.confidence += 0.5 * (confidence - person.confidence);
+  person.confidence += 0.5 * (scores.confidence(found.score) - person.confidence);
   if (person.moved() || is_supported(found.box)) person.since_seen = 0;
 }
 
 // Somebody new, where something moves that is no part of a person who is known: background is no person.
-void PersonVerifier::add(const PersonDetection& found, std::uint64_t frame, double confidence,
-                         double threshold) {
+void PersonVerifier::add(const PersonDetection& found, std::uint64_t frame, const Scores& scores) {
   if (!is_supported(found.box) || is_part(found.box)) return;
   Person person;
   person.begin(found.box, frame, pictures_, p_);
-  person.evidence = 1, person.confidence = confidence;
-  person.weak = found.score < threshold;
+  person.evidence = 1, person.confidence = scores.confidence(found.score);
+  person.weak = found.score < scores.threshold;
   person.sure = !person.weak && (share_on_tracks(person.box()) >= p_.on_track || person.walks() ||
-                                 found.score >= p_.sure_at * threshold);
+                                 found.score >= p_.sure_at * scores.threshold);
   people_.push_back(person);
 }
 
@@ -170,11 +165,12 @@ void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> hi
                            double certain) {
   if (!pictures_.holds(look.frame)) return;
   take_persons(hits, threshold);
+  const Scores scores{threshold, certain};
   const std::size_t known = people_.size();
   hit_.assign(known, 0);
-  confirm_known(look.frame, threshold, certain);
-  for (const PersonDetection& found : found_)
-    add(found, look.frame, confidence_of(found, threshold, certain), threshold);
+  confirm_known(found_, look.frame, scores);
+  for (const PersonDetection& found : found_) add(found, look.frame, scores);
+  confirm_known(weak_, look.frame, scores);
   const LookRegion& r = look.region;
   const Box seen{double(r.x), double(r.y), double(r.width), double(r.height)};
   miss(seen, look.frame, known);

@@ -140,8 +140,8 @@ void PersonVerifier::bind(Person& person, std::size_t candidate) {
   const bool sure = c.state == TrackState::seen && c.kind == RegionKind::person_like;
   const bool older = person.id >= kFirstOwn && sure && record(c.id).age > person.age;
   if ((person.id == 0 || older) && !is_owned(c.id)) person.id = c.id;
-  // Looks have shown that the track is right, or there was none lately that could show better.
-  const bool trusted = person.agreed >= p_.agreed || person.since_look > p_.unlooked;
+  // Looks have shown that the track is right, or the last look has left the person out.
+  const bool trusted = person.agreed >= p_.agreed || person.since_look > p_.unlooked * period_;
   if (trusted && is_whole(c, person)) {
     const bool near = intersection_over_union(person.box(), c.box) >= p_.unbound;
     person.pull(c.box, near ? p_.track_gain : 1, p_.track_gain, pictures_, p_);
@@ -233,8 +233,9 @@ std::optional<PersonVerifier::Look> PersonVerifier::choose() {
 
 std::span<const VerifiedRegion> PersonVerifier::result() {
   result_.clear();
-  for (const Person& person : people_) {
+  for (Person& person : people_) {
     if (!person.is_shown()) continue;
+    person.published = true;
     VerifiedRegion region{
         .candidate = person.candidate, .id = person.id, .box = person.box(), .person = true};
     region.confidence = person.confidence, region.age = person.age;
@@ -243,10 +244,11 @@ std::span<const VerifiedRegion> PersonVerifier::result() {
   }
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     const Candidate& each = candidates_[i];
-    // A track whose identity a person who is shown has taken along shows that person no more, and its new one is not
-    // known yet.
+    // A track whose identity a person has taken along in public shows that person no more, and its new one is not known
+    // yet. Of a person who has not been shown it shows what it did before.
     const auto replaces = [&](const Person& person) {
-      return person.is_shown() && (person.candidate == static_cast<int>(i) || person.id == each.id);
+      return (person.is_shown() && person.candidate == static_cast<int>(i)) ||
+             (person.published && person.id == each.id);
     };
     bool group = false;
     if (std::ranges::any_of(people_, replaces) || is_explained(each, group)) continue;

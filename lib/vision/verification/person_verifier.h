@@ -56,6 +56,8 @@ class PersonVerifier {
   static constexpr std::uint32_t kFirstOwn = 1'000'001;
 
   void reset();
+  // Time between two looks, s; .25 until it is set.
+  void set_period(double seconds) { period_ = seconds; }
   // The score down to which hits are of use: see VerificationParameters::weak.
   double least_score(double threshold) const { return p_.weak * threshold; }
   // The next frame. picture: its luma, reduced (any size, the same in every frame of a stream); motion: frame k-1 to k
@@ -83,6 +85,7 @@ class PersonVerifier {
     std::array<Box, PictureHistory::kKept> track_boxes{};  // empty: none was bound
     bool missed = false;                                   // by the last look at its place
     bool weak = false;                                     // found first by a detection below the threshold
+    bool published = false;                                // in some frame
     bool sure = false;  // a track has been there, the detector was certain, or the person walks; and not weak
     // Without a track of its own, and missed, it may have been drawn away from the person: it waits for a further look.
     // So does who was found once, weakly, or not certainly and where only the picture changed.
@@ -100,6 +103,10 @@ class PersonVerifier {
   };
   static constexpr std::size_t kMostLost = 32;
 
+  struct Scores {
+    double threshold = 0, certain = 0;
+    double confidence(double score) const;
+  };
   struct TrackRecord {
     std::uint32_t id = 0;
     double since_look = 1e9, since_seen = 0, age = 0;
@@ -118,9 +125,9 @@ class PersonVerifier {
   bool is_covered(std::size_t i, std::uint64_t frame) const;
   bool is_absorbed(std::size_t i) const;
   double likeness(const Person& person, const Box& box, std::uint64_t frame) const;
-  void confirm_known(std::uint64_t frame, double threshold, double certain);
-  void confirm(Person& person, const PersonDetection& found, std::uint64_t frame, double confidence);
-  void add(const PersonDetection& found, std::uint64_t frame, double confidence, double threshold);
+  void confirm_known(std::vector<PersonDetection>& found, std::uint64_t frame, const Scores& scores);
+  void confirm(Person& person, const PersonDetection& found, std::uint64_t frame, const Scores& scores);
+  void add(const PersonDetection& found, std::uint64_t frame, const Scores& scores);
   void miss(const Box& seen, std::uint64_t frame, std::size_t known);
   double share_on_tracks(const Box& box) const;
   bool is_whole(const Candidate& c, const Person& person) const;
@@ -144,7 +151,7 @@ class PersonVerifier {
   std::vector<LookTarget> targets_;
   PictureHistory pictures_;
   std::uint32_t next_own_ = kFirstOwn;
-  double seconds_ = 0;
+  double seconds_ = 0, period_ = 0.25;
 };
 
 template <typename Condition>

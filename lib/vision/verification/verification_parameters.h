@@ -20,8 +20,8 @@ struct VerificationParameters {
   // by hand. swept: docs/quality.md, 0 and 4.
   int velocity_frames = 4;
   int hidden_difference = 30;
-  // Share of the difference of the pictures at rest that is left at the first velocity: less, and the person walks. swept:
-  // docs/quality.md, .6 to .95.
+  // The person walks if the first velocity leaves less than this share of the difference of the pictures at rest. swept:
+  // docs/quality.md, 0 to .95.
   double walking = 0.75;
 
   // Detections and persons. Intersections over unions.
@@ -35,8 +35,8 @@ struct VerificationParameters {
       0.1;  // or this where the track is as high and wide as the person: that one was lost in the picture
   double agrees = 0.6;  // a look shows the person where the track is,
   int agreed = 3;       // and so often in a row before the person is drawn towards the track
-  // Or s without a look at the person. Derived: longer than the time between two looks; swept: docs/quality.md, .5.
-  double unlooked = 0.3;
+  // Or it is drawn there after so many periods of the looks without one at the person. swept: docs/quality.md, .6 to never.
+  double unlooked = 1.2;
   // Natural logarithms of a track's height and width over a person's: more, and it is not this person alone.
   double alike_height = 0.2, alike_width = 0.4;
   double part =
