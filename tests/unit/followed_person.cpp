@@ -199,8 +199,7 @@ START_TEST(a_person_follows_a_whole_track_that_looks_found_right_or_left_out) {
 }
 END_TEST
 
-// The surest detection is nearer to the right one of two persons, but a second one fits that person still better.
-// Of 1.3 times the height: it may hold somebody else as well.
+// A track of 1.3 times the height may hold somebody else as well.
 START_TEST(a_person_does_not_follow_a_track_that_is_not_whole) {
   Rig rig;
   Box track = person_at(200);
@@ -225,6 +224,7 @@ START_TEST(a_weak_detection_does_not_take_the_place_of_a_strong_one) {
 }
 END_TEST
 
+// The surest detection is nearer to the right one of two persons, but a second one fits that person still better.
 START_TEST(detections_go_to_the_persons_whom_they_fit_best) {
   Rig rig;
   const auto ids = [&] {

@@ -105,7 +105,8 @@ double PersonVerifier::likeness(const Person& person, const Box& box, std::uint6
   return alike ? intersection_over_union(then, box) : 0;
 }
 
-// Each of the persons whom no detection has shown yet gets the one that fits, the best pair first, which leaves `found`.
+// Gives detections to the known persons whom they show, the pair that fits best first, and takes them out of `found`. A
+// person gets one a look.
 void PersonVerifier::confirm_known(std::vector<PersonDetection>& found, std::uint64_t frame,
                                    const Scores& scores) {
   for (;;) {

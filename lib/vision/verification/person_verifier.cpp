@@ -245,7 +245,7 @@ std::span<const VerifiedRegion> PersonVerifier::result() {
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     const Candidate& each = candidates_[i];
     // A track whose identity a person has taken along in public shows that person no more, and its new one is not known
-    // yet. Of a person who has not been shown it shows what it did before.
+    // yet. The track of a person who has not been shown stays as it was.
     const auto replaces = [&](const Person& person) {
       return (person.is_shown() && person.candidate == static_cast<int>(i)) ||
              (person.published && person.id == each.id);

@@ -103,7 +103,7 @@ class PersonVerifier {
   };
   static constexpr std::size_t kMostLost = 32;
 
-  struct Scores {
+  struct Scores {  // of the detector
     double threshold = 0, certain = 0;
     double confidence(double score) const;
   };

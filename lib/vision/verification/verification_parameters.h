@@ -35,7 +35,8 @@ struct VerificationParameters {
       0.1;  // or this where the track is as high and wide as the person: that one was lost in the picture
   double agrees = 0.6;  // a look shows the person where the track is,
   int agreed = 3;       // and so often in a row before the person is drawn towards the track
-  // Or it is drawn there after so many periods of the looks without one at the person. swept: docs/quality.md, .6 to never.
+  // Periods of the looks without one at the person: after more, the person is drawn towards the track as well. swept:
+  // docs/quality.md, .6 to never.
   double unlooked = 1.2;
   // Natural logarithms of a track's height and width over a person's: more, and it is not this person alone.
   double alike_height = 0.2, alike_width = 0.4;
