@@ -23,6 +23,7 @@ void Detector::set_options(const DetectorOptions& options) {
 void Detector::set_parameters(const DetectorParameters& parameters) {
   regions_.set_parameters(parameters.detection);
   tracker_.set_parameters(parameters.tracking);
+  edge_ = parameters.edge;
 }
 
 void Detector::reset() {
@@ -174,6 +175,9 @@ void Detector::track(Analysis& record, const DetectorFrame& frame, std::span<con
   std::vector<Track>& out = record.tracks.write();
   for (Track track :
        tracker_.update(regions, frame.motion.transform, frame.seconds, frame.size, orientation, sight)) {
+    if (options_.differences.blur > 1 && record.luma)
+      track.box = without_edge(track.box,
+                               static_cast<double>(frame.size.width) / (*record.luma)->size().width, edge_);
     const Placement place = lens.place(track.box, 0, tilt, options_.mounting_height);
     if (!passes(options_.speed, std::hypot(track.vx, track.vy), track.top_speed, place)) continue;
     track.bearing = place.bearing;

@@ -9,6 +9,7 @@
 
 #include "vision/analysis.h"
 #include "vision/burnt_in/burnt_in.h"
+#include "vision/detection/box_edge.h"
 #include "vision/detection/limits.h"
 #include "vision/detection/zones.h"
 #include "vision/duplicate_frames.h"
@@ -136,6 +137,7 @@ class Detector {
   Zones zones_;
   bool zones_placed_ = false;
   Tracker tracker_;
+  BoxEdgeParameters edge_;
   Size foreground_size_, regions_size_;
   Sequence differences_sequence_, foreground_sequence_, regions_sequence_;
   threads::Pool<Analysis> records_;

@@ -32,44 +32,22 @@ class Numbers {
 // A member of a struct's table: a name cannot stand for another member. tests/unit/parameters finds missing ones.
 #define N(member)      \
   Numbers::Number {    \
-#member, &p.member \
+    #member, &p.member \
   }
 // The same of a divisor.
-#define D(member)         \
-  Numbers::Number {       \
-#member, &p.member, 1 \
-  }
+#define D(member) Numbers::Number{#member, &p.member, 1}
 
 void name(Numbers n, RegionParameters& p) {
-  n.add({N(least_share),
-         N(least_height),
-         N(narrowest),
-         N(widest),
-         N(least_filled),
-         N(tallest),
-         N(usual_least),
-         N(usual_most),
-         N(usual_aspect),
-         N(alone),
-         N(step_x),
-         N(step_y),
-         N(shrinks),
-         N(grows),
-         N(least_looks),
-         N(walked),
-         N(across),
-         N(down),
-         N(joined),
-         N(least_unknown),
-         N(walked_to_be_seen),
-         N(beside),
-         N(loose),
-         N(slack),
-         N(explained),
-         N(same_block),
-         N(young),
-         N(rim),
-         N(person_confidence),
+  n.add({N(least_share),     N(least_height),  N(narrowest),
+         N(widest),          N(least_filled),  N(tallest),
+         N(usual_least),     N(usual_most),    N(usual_aspect),
+         N(alone),           N(step_x),        N(step_y),
+         N(shrinks),         N(grows),         N(least_looks),
+         N(walked),          N(across),        N(down),
+         N(joined),          N(least_unknown), N(walked_to_be_seen),
+         N(beside),          N(loose),         N(feet),
+         N(slack),           N(explained),     N(same_block),
+         N(young),           N(rim),           N(person_confidence),
          N(other_confidence)});
 }
 
@@ -94,7 +72,11 @@ void name(Numbers n, HeightPrior::Parameters& p) {
 }
 
 void name(Numbers n, OutlineFinder::Parameters& p) {
-  n.add({N(skirt), N(reach), N(thickness), N(shadow_zone)});
+  n.add({N(skirt), N(reach), N(thickness), N(shadow_zone), N(knee), N(slope), N(toes), D(least_leg)});
+}
+
+void name(Numbers n, BoxEdgeParameters& p) {
+  n.add({N(blur), N(most)});
 }
 
 void name(Numbers n, PersonBoxParameters& p) {
@@ -136,6 +118,7 @@ void name(Numbers n, TrackParameters& p) {
          N(misfit_confidence),
          N(same_extent_least),
          N(same_extent_most),
+         N(stride),
          N(gate_noise),
          N(gate),
          N(off_screen_gate),
@@ -263,6 +246,7 @@ std::vector<NamedNumber> named_numbers(DetectorParameters& p) {
   stage("height", p.detection.height);
   stage("outline", p.detection.outline);
   stage("box", p.detection.box);
+  stage("edge", p.edge);
   stage("head", p.detection.head);
   stage("bodies", p.detection.bodies);
   stage("confirmation", p.detection.confirmation);

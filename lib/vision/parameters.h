@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "vision/detection/box_edge.h"
 #include "vision/detection/region_parameters.h"
 #include "vision/tracking/tracking_parameters.h"
 
@@ -15,6 +16,7 @@ namespace cerberus::vision {
 struct DetectorParameters {
   DetectionParameters detection;
   TrackingParameters tracking;
+  BoxEdgeParameters edge;
 };
 
 struct NamedNumber {

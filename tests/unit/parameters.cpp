@@ -75,6 +75,7 @@ START_TEST(every_number_of_every_stage_has_a_name_of_its_own) {
   all_are_named("height", d.height);
   all_are_named("outline", d.outline);
   all_are_named("box", d.box);
+  all_are_named("edge", p.edge);
   all_are_named("head", d.head);
   all_are_named("bodies", d.bodies);
   all_are_named("confirmation", d.confirmation);

@@ -34,6 +34,27 @@ Bounds OutlineFinder::find_body(const Component& c, std::size_t self, std::span<
   return {c.left + left, c.top, c.left + right, c.bottom};
 }
 
+// A leg in stride rises from the foot to the knee beside the body, where a shadow lies flat. Returns the number of columns
+// that it takes from `first` on, one `step` (1 or -1) after the other and `most` at most; 0: there is none.
+int OutlineFinder::leg(const Component& c, int first, int step, int most, BitView moving) const {
+  const Parameters& q = parameters_;
+  const double h = c.height();
+  const int least = static_cast<int>(q.thickness * h);
+  if (least < q.least_leg) return 0;
+  const int zone = c.bottom - static_cast<int>(q.shadow_zone * h);
+  int knee = c.bottom, lowest = 0, fallen = 0;  // rows; columns up to where it last fell
+  for (int k = 0; k < most && k - fallen <= q.toes * h; ++k) {
+    const int x = first + step * k;
+    int top = c.bottom, filled = 0;
+    for (int y = c.bottom; y-- > zone;)
+      if (moving.row(y)[x / 64] >> (x % 64) & 1) top = y, ++filled;
+    if (filled < least) break;
+    if (k == 0) knee = top;
+    if (top > lowest) lowest = top, fallen = k + 1;
+  }
+  return c.bottom - knee >= q.knee * h && lowest - knee >= q.slope * fallen ? fallen : 0;
+}
+
 // An outstretched arm or leg makes low columns as a shadow does, but reaches higher. What only the closing has joined to
 // the body is no limb.
 Bounds OutlineFinder::add_limbs(const Component& c, const Bounds& body, BitView moving) {
@@ -52,6 +73,8 @@ Bounds OutlineFinder::add_limbs(const Component& c, const Bounds& body, BitView 
   Bounds whole = body;
   while (whole.left > from && columns_[whole.left - 1 - from] >= least) --whole.left;
   while (whole.right < to && columns_[whole.right - from] >= least) ++whole.right;
+  whole.left = std::min(whole.left, body.left - leg(c, body.left - 1, -1, body.left - from, moving));
+  whole.right = std::max(whole.right, body.right + leg(c, body.right, 1, to - body.right, moving));
   return whole;
 }
 

@@ -30,6 +30,11 @@ class OutlineFinder {
     // where a tape that sways counts as an arm; .86 and .70 with a zone of .3.
     double thickness = 0.05;
     double shadow_zone = 0.4;  // from the ground upwards
+    // A leg in stride, beside the body and below that height: it begins at `knee` or above, falls by `slope` rows a
+    // column, and ends where it has not fallen for `toes`. A thinner one than `least_leg` pixels cannot be told from a
+    // shadow. swept: docs/quality.md. Guard: the width of the player's box on davis_tennis (bench-fit).
+    double knee = 0.15, slope = 0.5, toes = 0.1;
+    int least_leg = 3;
   };
 
   OutlineFinder() = default;
@@ -45,6 +50,7 @@ class OutlineFinder {
  private:
   Bounds find_body(const Component& component, std::size_t self, std::span<const Run> runs);
   Bounds add_limbs(const Component& component, const Bounds& body, BitView moving);
+  int leg(const Component& component, int first, int step, int most, BitView moving) const;
 
   Parameters parameters_;
   std::vector<int> columns_;  // scratch: foreground of a component in each of its columns

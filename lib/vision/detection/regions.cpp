@@ -307,6 +307,10 @@ void RegionFinder::State::explain(int g) {
     const double rest = unexplained(window, found);
     const auto kind = rest > p.beside ? RegionKind::group : RegionKind::person_like;
     if (rest > p.loose) return add_all([kind](const Component&) { return kind; });
+    // A body in stride may fit without its feet: a blob as high and as slender as one person is one.
+    if (slender && window.height() > p.usual_least * expected &&
+        window.bottom - found[0].box.bottom() > p.feet * window.height())
+      return add_all([](const Component&) { return RegionKind::person_like; });
   }
   add_people(g, window, found);
 }

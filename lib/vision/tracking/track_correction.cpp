@@ -60,6 +60,10 @@ TrackHypothesis::Comparison TrackHypothesis::compare(const Box& seen, Size frame
   Comparison c;
   c.x = compare_extents(b.x, b.right(), seen.x, seen.right(), *parameters);
   c.y = compare_extents(b.y, b.bottom(), seen.y, seen.bottom(), *parameters);
+  // Somebody who walks is wider in mid-stride, and no higher.
+  if (c.y.same_extent && seen.width > b.width &&
+      seen.width < parameters->stride * std::min(seen.height, b.height))
+    c.x = {centre(seen).x - centre(b).x, true};
   c.fits = c.x.same_extent && c.y.same_extent;
   c.smaller = seen.area() < b.area();
   c.within_x = seen.x >= b.x && seen.right() <= b.right();

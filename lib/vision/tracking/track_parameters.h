@@ -38,6 +38,9 @@ struct TrackParameters {
 
   // Extents that agree, seen / expected.
   double same_extent_least = 0.65, same_extent_most = 1.5;
+  // Width of somebody in mid-stride, in heights: a narrower one that grows agrees whatever it was. derived: a stride is .43
+  // of the height, a foot .15. swept: docs/quality.md, 0 to .75.
+  double stride = 0.6;
 
   // Validation gate and pair cost.
   double gate_noise = 0.15;      // S that a place may be wrong by, beyond the filter's own variance
