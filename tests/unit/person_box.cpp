@@ -2,10 +2,12 @@
 // Boxes around drawn people, whose pixels are known.
 #include "vision/detection/person_box.h"
 
+#include <utility>
 #include <vector>
 
 #include "support/bodies.h"
 #include "support/suite.h"
+#include "vision/detection/box_edge.h"
 
 using namespace cerberus::vision;
 namespace tests = cerberus::tests;
@@ -157,6 +159,20 @@ START_TEST(a_body_without_foreground_where_its_head_should_be_has_none) {
 }
 END_TEST
 
+// At an analysed pixel of 2 frame pixels; a box of few pixels keeps most of itself.
+START_TEST(a_published_box_is_without_the_edge_that_the_blur_adds) {
+  const BoxEdgeParameters edge{.blur = 0.4, .most = 0.1};
+  const Box large = without_edge({10, 20, 30, 40}, 2, edge), little = without_edge({0, 0, 2, 4}, 2, edge);
+  for (const auto& [is, should] :
+       {std::pair{large, Box{10.8, 20.8, 28.4, 38.4}}, {little, {0.2, 0.4, 1.6, 3.2}}}) {
+    ck_assert_double_eq_tol(is.x, should.x, 1e-9);
+    ck_assert_double_eq_tol(is.y, should.y, 1e-9);
+    ck_assert_double_eq_tol(is.width, should.width, 1e-9);
+    ck_assert_double_eq_tol(is.height, should.height, 1e-9);
+  }
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "person_box",
@@ -166,5 +182,6 @@ int main() {
        a_head_that_is_not_where_it_is_expected_is_found_near_by, pixels_belong_to_the_nearer_of_two_persons,
        a_person_without_pixels_or_outside_the_picture_keeps_a_finite_box,
        a_head_is_free_where_at_most_a_quarter_of_what_is_beside_it_is_foreground,
-       a_body_without_foreground_where_its_head_should_be_has_none});
+       a_body_without_foreground_where_its_head_should_be_has_none,
+       a_published_box_is_without_the_edge_that_the_blur_adds});
 }

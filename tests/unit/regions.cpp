@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "support/allocations.h"
@@ -184,6 +185,33 @@ START_TEST(an_outstretched_arm_is_part_of_the_box_and_a_swaying_tape_is_not) {
 }
 END_TEST
 
+// A trunk of 15 x 80 pixels and a leg of 8 rows that falls by a row a column, or a shadow of as many rows on the floor. At
+// half the size the leg is too thin to be told from a shadow.
+START_TEST(a_leg_in_stride_is_part_of_the_box_on_either_side_and_a_flat_shadow_is_not) {
+  for (const bool mirrored : {false, true})
+    for (const bool leg : {true, false})
+      for (const bool small : {false, true}) {
+        RegionFinder finder = settled();
+        Picture picture;
+        const double scale = small ? 0.5 : 1;
+        const auto fill = [&](double left, double top, double right, double bottom) {
+          if (mirrored) left = -std::exchange(right, -left);
+          picture.fill(160 + scale * left, 100 + scale * top, 160 + scale * right, 100 + scale * bottom);
+        };
+        fill(0, -80, 15, 0);
+        for (int k = 0; k < 28; ++k) fill(15 + k, leg ? k - 32 : -8, 16 + k, leg ? k - 24 : 0);
+        const auto regions = picture.find(finder);
+        ck_assert_uint_eq(regions.size(), 1);
+        const Box& box = regions[0].box;
+        const double reach = mirrored ? 160 - box.x : box.right() - 160;
+        if (leg && !small)
+          ck_assert_double_ge(reach, 38);
+        else
+          ck_assert_double_le(reach, scale * 20);
+      }
+}
+END_TEST
+
 START_TEST(two_people_arm_in_arm_are_one_region_before_and_two_after_people_were_seen) {
   RegionFinder finder;
   Picture picture;
@@ -332,6 +360,21 @@ START_TEST(a_person_who_lunges_is_boxed_with_the_leg_that_he_stretches_out) {
   ck_assert_double_eq(regions[0].box.y, 150);
   ck_assert_double_eq(regions[0].box.right(), 186);
   ck_assert_double_eq(regions[0].box.bottom(), 200);
+}
+END_TEST
+
+// A body of 47 rows that ends at the calves, and below it two legs that are too far apart for one's feet.
+START_TEST(a_walker_whose_body_fits_without_the_feet_is_boxed_with_them) {
+  RegionFinder finder;
+  let_people_walk_by(finder);
+  Picture picture;
+  picture.person(150, 188);
+  picture.fill(143, 186, 146, 199);
+  picture.fill(154, 186, 157, 199);
+  const auto regions = picture.find(finder);
+  ck_assert_uint_eq(regions.size(), 1);
+  ck_assert(is_person_like(regions[0]));
+  ck_assert_double_eq(regions[0].box.bottom(), 199);
 }
 END_TEST
 
@@ -610,6 +653,7 @@ int main() {
                   the_mask_comes_back_closed_and_without_specks,
                   a_low_shadow_on_the_floor_is_not_part_of_the_box,
                   an_outstretched_arm_is_part_of_the_box_and_a_swaying_tape_is_not,
+                  a_leg_in_stride_is_part_of_the_box_on_either_side_and_a_flat_shadow_is_not,
                   two_people_arm_in_arm_are_one_region_before_and_two_after_people_were_seen,
                   two_people_whose_heads_are_seen_are_two_once_they_have_walked,
                   two_people_who_stand_are_a_group_before_any_height_is_known,
@@ -619,6 +663,7 @@ int main() {
                   head_and_legs_without_a_trunk_are_one_person_once_people_are_known,
                   a_person_cut_in_pieces_by_a_lamp_post_and_a_belt_is_one,
                   a_person_who_lunges_is_boxed_with_the_leg_that_he_stretches_out,
+                  a_walker_whose_body_fits_without_the_feet_is_boxed_with_them,
                   a_person_below_a_branch_that_sways_is_boxed_without_it,
                   a_car_among_people_is_not_cut_into_people_nor_lost,
                   a_round_car_as_tall_as_people_is_one_region_until_it_has_left,

@@ -275,6 +275,20 @@ START_TEST(after_a_leap_the_velocity_is_that_of_the_leap) {
 END_TEST
 
 // The rounded overlap of a box with itself may be more than 1.
+// Twice as wide at the same height is a stride, and takes effect at once; what is wider than a stride, or lower, is not.
+START_TEST(a_track_becomes_as_wide_as_somebody_in_mid_stride) {
+  const auto width_after = [](const Box& seen) {
+    TrackHypothesis track = TrackHypothesis::first_seen({{200, 100, 25, 100}, 2000, 0.9, 1});
+    track.predict(0.04);
+    track.correct({seen, 2000, 0.9, 1}, true, 0.04, kFrame);
+    return track.width();
+  };
+  ck_assert_double_gt(width_after({187, 100, 50, 100}), 27);
+  ck_assert_double_eq_tol(width_after({180, 100, 65, 100}), 25, 1e-9);
+  ck_assert_double_eq_tol(width_after({187, 100, 50, 60}), 25, 1e-9);
+}
+END_TEST
+
 START_TEST(a_region_that_fits_exactly_is_at_no_distance) {
   for (int k = 0; k < 1000; ++k) {
     const Region seen{{700 + k / 7.0, 45 + k / 11.0, 10 + k / 70.0, 37 + k / 60.0}, 300, 0.9, 1};
@@ -328,9 +342,9 @@ int main() {
       {a_moving_camera_s_track_shrinks_in_its_second_frame_of_a_twentieth_second_at_least,
        before_a_moving_camera_a_track_s_velocity_is_less_certain,
        the_velocity_of_what_is_faster_than_a_jogger_is_less_certain,
-       after_a_leap_the_velocity_is_that_of_the_leap, a_region_that_fits_exactly_is_at_no_distance,
-       each_transition_leads_to_its_state, a_zoom_scales_all_of_its_lengths,
-       a_camera_that_rolls_turns_the_velocity,
+       after_a_leap_the_velocity_is_that_of_the_leap, a_track_becomes_as_wide_as_somebody_in_mid_stride,
+       a_region_that_fits_exactly_is_at_no_distance, each_transition_leads_to_its_state,
+       a_zoom_scales_all_of_its_lengths, a_camera_that_rolls_turns_the_velocity,
        a_fragment_replaces_the_track_if_it_leaves_its_place_in_the_scene,
        towards_the_picture_s_middle_an_off_screen_track_shrinks_as_a_pinhole_projects_it,
        a_person_s_own_region_replaces_a_group_s_extent_at_once_and_a_person_s_after_a_while,
