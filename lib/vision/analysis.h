@@ -63,6 +63,7 @@ struct Differences {
   GrayPicture previous;  // D(k-1); none where no stage or element reads it
   Histogram histogram{};
   DifferenceResult result;  // with the change of light that was taken out
+  bool blurred = false;     // the pictures were
 };
 
 struct Foreground {
@@ -70,6 +71,7 @@ struct Foreground {
   ForegroundMaskResult result;  // threshold and noise
   FuzzyThresholdOptions chosen_with;     // how the threshold was chosen from the histogram
   std::optional<BurntInBoxes> burnt_in;  // left out of the mask; none where it is not learnt
+  bool blurred = false;                  // made of blurred pictures: see BoxEdgeParameters
 };
 
 struct FoundRegions {

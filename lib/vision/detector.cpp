@@ -89,6 +89,7 @@ void Detector::find_differences(Analysis& record, const DetectorFrame& frame) {
   const GrayView luma = (*record.luma)->view();
   const bool previous = frame.everything || options_.foreground.area != Area::all;
   Differences& out = record.differences.write();
+  out.blurred = options_.differences.blur > 1;
   out.current = gray(luma.size());
   if (previous) out.previous = gray(luma.size());
   out.result = differences_->update(luma, frame.motion.in(luma.size(), frame.size), out.current->view(),
@@ -116,6 +117,8 @@ void Detector::find_foreground(Analysis& record, const DetectorFrame& frame) {
   input.frames = differences.result.frames;
   input.excluded = burnt_in_.boxes();
   Foreground& out = record.foreground.write();
+  out.blurred =
+      differences.blurred || options_.foreground.background_model;  // which compares blurred pictures
   out.mask = gray(luma.size());
   out.result = foreground_->update(input, out.mask->view());
   out.chosen_with = options_.foreground.threshold;
@@ -175,11 +178,12 @@ void Detector::track(Analysis& record, const DetectorFrame& frame, std::span<con
   std::vector<Track>& out = record.tracks.write();
   for (Track track :
        tracker_.update(regions, frame.motion.transform, frame.seconds, frame.size, orientation, sight)) {
-    if (options_.differences.blur > 1 && record.luma)
-      track.box = without_edge(track.box,
-                               static_cast<double>(frame.size.width) / (*record.luma)->size().width, edge_);
     const Placement place = lens.place(track.box, 0, tilt, options_.mounting_height);
     if (!passes(options_.speed, std::hypot(track.vx, track.vy), track.top_speed, place)) continue;
+    if (record.luma && record.foreground && record.foreground->blurred) {
+      const double pixel = static_cast<double>(frame.size.width) / (*record.luma)->size().width;
+      track.box = without_edge(track.box, pixel, frame.size, edge_);
+    }
     track.bearing = place.bearing;
     track.distance = place.distance;
     out.push_back(track);

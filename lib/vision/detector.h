@@ -9,7 +9,7 @@
 
 #include "vision/analysis.h"
 #include "vision/burnt_in/burnt_in.h"
-#include "vision/detection/box_edge.h"
+#include "vision/geometry/box_edge.h"
 #include "vision/detection/limits.h"
 #include "vision/detection/zones.h"
 #include "vision/duplicate_frames.h"

@@ -34,7 +34,7 @@ class Numbers {
   Numbers::Number {    \
     #member, &p.member \
   }
-// The same of a divisor.
+// The same of a number that is 1 at least, as a divisor.
 #define D(member) Numbers::Number{#member, &p.member, 1}
 
 void name(Numbers n, RegionParameters& p) {

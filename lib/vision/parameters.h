@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "vision/detection/box_edge.h"
 #include "vision/detection/region_parameters.h"
+#include "vision/geometry/box_edge.h"
 #include "vision/tracking/tracking_parameters.h"
 
 namespace cerberus::vision {

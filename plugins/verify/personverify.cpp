@@ -193,6 +193,8 @@ gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
     state.threshold = settings.threshold > 0 ? settings.threshold
                       : model                ? kModelThreshold
                                              : kDaimlerThreshold;
+    state.verifier.set_margins(model ? 0 : cerberus::plugin::kAboveHead,
+                               model ? 0 : cerberus::plugin::kBelowFeet);
     state.certain = std::max(model ? kModelCertain : kDaimlerCertain, state.threshold);
     const double least = state.verifier.least_score(state.threshold);
     std::string wrong;

@@ -7,7 +7,7 @@
 
 #include "support/bodies.h"
 #include "support/suite.h"
-#include "vision/detection/box_edge.h"
+#include "vision/geometry/box_edge.h"
 
 using namespace cerberus::vision;
 namespace tests = cerberus::tests;
@@ -159,12 +159,16 @@ START_TEST(a_body_without_foreground_where_its_head_should_be_has_none) {
 }
 END_TEST
 
-// At an analysed pixel of 2 frame pixels; a box of few pixels keeps most of itself.
+// At an analysed pixel of 2 frame pixels. A box of few pixels keeps most of itself, and one that the frame cuts off its
+// side there.
 START_TEST(a_published_box_is_without_the_edge_that_the_blur_adds) {
   const BoxEdgeParameters edge{.blur = 0.4, .most = 0.1};
-  const Box large = without_edge({10, 20, 30, 40}, 2, edge), little = without_edge({0, 0, 2, 4}, 2, edge);
-  for (const auto& [is, should] :
-       {std::pair{large, Box{10.8, 20.8, 28.4, 38.4}}, {little, {0.2, 0.4, 1.6, 3.2}}}) {
+  const Box large = without_edge({10, 20, 30, 40}, 2, kSize, edge),
+            little = without_edge({1, 1, 2, 4}, 2, kSize, edge),
+            cut = without_edge({0, 200, 320, 40}, 2, kSize, edge);
+  for (const auto& [is, should] : {std::pair{large, Box{10.8, 20.8, 28.4, 38.4}},
+                                   {little, {1.2, 1.4, 1.6, 3.2}},
+                                   {cut, {0, 200.8, 320, 39.2}}}) {
     ck_assert_double_eq_tol(is.x, should.x, 1e-9);
     ck_assert_double_eq_tol(is.y, should.y, 1e-9);
     ck_assert_double_eq_tol(is.width, should.width, 1e-9);

@@ -201,6 +201,10 @@ START_TEST(a_detection_makes_its_track_a_person_with_the_tracks_identity) {
   ck_assert(all[0].person && all[0].id == 4 && all[0].candidate == 0);
   ck_assert_double_eq_tol(all[0].box.x, 219, 5);
   ck_assert_double_eq_tol(all[0].confidence, 0.5 + 0.5 * (3 - kFloor) / (kCertain - kFloor), 1e-9);
+  rig.verifier.set_margins(0.03, 0.02);
+  const Box trimmed = rig.result()[0].box, &whole = all[0].box;
+  ck_assert_double_eq_tol(trimmed.y, whole.y + 0.03 * whole.height, 1e-9);
+  ck_assert_double_eq_tol(trimmed.bottom(), whole.bottom() - 0.02 * whole.height, 1e-9);
 }
 END_TEST
 

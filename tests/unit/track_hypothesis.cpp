@@ -274,21 +274,24 @@ START_TEST(after_a_leap_the_velocity_is_that_of_the_leap) {
 }
 END_TEST
 
-// The rounded overlap of a box with itself may be more than 1.
-// Twice as wide at the same height is a stride, and takes effect at once; what is wider than a stride, or lower, is not.
+// Twice as wide at the same height is a stride, and takes effect at once. What is wider than a stride, or lower, is not, nor
+// is a region that another track shares, or a group's.
 START_TEST(a_track_becomes_as_wide_as_somebody_in_mid_stride) {
-  const auto width_after = [](const Box& seen) {
+  const auto width_after = [](const Box& seen, bool alone = true, RegionKind kind = RegionKind::thing) {
     TrackHypothesis track = TrackHypothesis::first_seen({{200, 100, 25, 100}, 2000, 0.9, 1});
     track.predict(0.04);
-    track.correct({seen, 2000, 0.9, 1}, true, 0.04, kFrame);
+    track.correct({seen, 2000, 0.9, 1, kind}, alone, 0.04, kFrame);
     return track.width();
   };
   ck_assert_double_gt(width_after({187, 100, 50, 100}), 27);
   ck_assert_double_eq_tol(width_after({180, 100, 65, 100}), 25, 1e-9);
   ck_assert_double_eq_tol(width_after({187, 100, 50, 60}), 25, 1e-9);
+  ck_assert_double_eq_tol(width_after({187, 100, 50, 100}, false), 25, 1e-9);
+  ck_assert_double_eq_tol(width_after({187, 100, 50, 100}, true, RegionKind::group), 25, 1e-9);
 }
 END_TEST
 
+// The rounded overlap of a box with itself may be more than 1.
 START_TEST(a_region_that_fits_exactly_is_at_no_distance) {
   for (int k = 0; k < 1000; ++k) {
     const Region seen{{700 + k / 7.0, 45 + k / 11.0, 10 + k / 70.0, 37 + k / 60.0}, 300, 0.9, 1};

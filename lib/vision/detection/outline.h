@@ -30,11 +30,12 @@ class OutlineFinder {
     // where a tape that sways counts as an arm; .86 and .70 with a zone of .3.
     double thickness = 0.05;
     double shadow_zone = 0.4;  // from the ground upwards
-    // A leg in stride, beside the body and below that height: it begins at `knee` or above, falls by `slope` rows a
-    // column, and ends where it has not fallen for `toes`. A thinner one than `least_leg` pixels cannot be told from a
-    // shadow. swept: docs/quality.md. Guard: the width of the player's box on davis_tennis (bench-fit).
+    // A leg in stride, beside the body and below that height: it begins at `knee` or above and falls by `slope` rows a
+    // column. It ends where it last fell, once it has not fallen for `toes`. In a blob where `thickness` is less than
+    // `least_leg` pixels no leg is looked for: it could not be told from a shadow. swept: docs/quality.md. Guard: the width
+    // of the player's box on davis_tennis (bench-fit).
     double knee = 0.15, slope = 0.5, toes = 0.1;
-    int least_leg = 3;
+    int least_leg = 4;
   };
 
   OutlineFinder() = default;

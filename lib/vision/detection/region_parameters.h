@@ -54,7 +54,8 @@ struct RegionParameters {
   // Beyond it he does not stand upright (a lunging player), and the blob's box is his.
   double loose = 0.15;
   // Share of the height of a blob that is as high and as slender as one person, below its only body: more, and the blob's
-  // box counts. swept: docs/quality.md, .05 to .13.
+  // own box counts, as feet that far down are beyond what fit_box searches (PersonBoxParameters::foot_fall). swept:
+  // docs/quality.md, .05 to .13.
   double feet = 0.1;
   double slack = 0.06;     // heights around a person's box that it explains as well
   double explained = 0.4;  // of a component's box that persons cover: it is theirs

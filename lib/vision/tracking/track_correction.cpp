@@ -18,7 +18,7 @@ Point centre(const Box& b) {
 void TrackHypothesis::correct(const Region& region, bool alone, double seconds, Size frame,
                               const std::optional<Point>& found) {
   const Box& seen = region.box;
-  const Comparison how = compare(seen, frame);
+  const Comparison how = compare(seen, alone && region.kind != RegionKind::group, frame);
   const double before = size();
   uncut.leaving = (how.cut_x && seen.width < parameters->leaving * uncut.width) ||
                   (how.cut_y && seen.height < parameters->leaving * uncut.height);
@@ -55,13 +55,13 @@ void TrackHypothesis::take_kind(RegionKind seen, bool alone, bool fits, double s
   if (group && (own || within)) kind = seen;
 }
 
-TrackHypothesis::Comparison TrackHypothesis::compare(const Box& seen, Size frame) const {
+TrackHypothesis::Comparison TrackHypothesis::compare(const Box& seen, bool alone, Size frame) const {
   const Box b = box();
   Comparison c;
   c.x = compare_extents(b.x, b.right(), seen.x, seen.right(), *parameters);
   c.y = compare_extents(b.y, b.bottom(), seen.y, seen.bottom(), *parameters);
-  // Somebody who walks is wider in mid-stride, and no higher.
-  if (c.y.same_extent && seen.width > b.width &&
+  // A track of its own region follows a walker's width through the stride.
+  if (alone && c.y.same_extent && seen.width > b.width &&
       seen.width < parameters->stride * std::min(seen.height, b.height))
     c.x = {centre(seen).x - centre(b).x, true};
   c.fits = c.x.same_extent && c.y.same_extent;

@@ -211,7 +211,7 @@ struct TrackHypothesis {
   double stretch() const;
 
   // Steps of correct(), in track_correction.cpp.
-  Comparison compare(const Box& seen, Size frame) const;
+  Comparison compare(const Box& seen, bool alone, Size frame) const;
   bool is_cut(double from, double to, double largest, int side) const;
   bool outgrown(const Region& region, bool cut, double seconds);
   bool jumps(const Box& seen, double seconds) const;

@@ -238,8 +238,8 @@ std::span<const VerifiedRegion> PersonVerifier::result() {
     person.published = true;
     VerifiedRegion region{
         .candidate = person.candidate, .id = person.id, .box = person.box(), .person = true};
-    region.box.y += p_.above_head * region.box.height;
-    region.box.height *= 1 - p_.above_head - p_.below_feet;
+    region.box.y += above_head_ * region.box.height;
+    region.box.height *= 1 - above_head_ - below_feet_;
     region.confidence = person.confidence, region.age = person.age;
     region.vx = person.velocity().x / seconds_, region.vy = person.velocity().y / seconds_;
     result_.push_back(region);

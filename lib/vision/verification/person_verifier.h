@@ -58,6 +58,11 @@ class PersonVerifier {
   void reset();
   // Time between two looks, s; .25 until it is set.
   void set_period(double seconds) { period_ = seconds; }
+  // Shares of the detector's boxes above the head and below the feet: persons are followed with them, as their pictures
+  // are compared, and published without. 0 until they are set.
+  void set_margins(double above_head, double below_feet) {
+    above_head_ = above_head, below_feet_ = below_feet;
+  }
   // The score down to which hits are of use: see VerificationParameters::weak.
   double least_score(double threshold) const { return p_.weak * threshold; }
   // The next frame. picture: its luma, reduced (any size, the same in every frame of a stream); motion: frame k-1 to k
@@ -151,7 +156,7 @@ class PersonVerifier {
   std::vector<LookTarget> targets_;
   PictureHistory pictures_;
   std::uint32_t next_own_ = kFirstOwn;
-  double seconds_ = 0, period_ = 0.25;
+  double seconds_ = 0, period_ = 0.25, above_head_ = 0, below_feet_ = 0;
 };
 
 template <typename Condition>

@@ -29,8 +29,10 @@ struct VerificationParameters {
   // Logarithm of the heights' ratio up to which it may be: part_height, from where on the smaller is a part. swept:
   // docs/quality.md
   double same_height = 0.3;
-  double bound = 0.5;     // a track is of the person,
-  double unbound = 0.25;  // and stays so down to this. swept: docs/quality.md, .2 to .45;
+  double bound = 0.5;  // a track is of the person,
+  // and stays so down to this, below which it also replaces the box of the person whom it shows. swept: docs/quality.md,
+  // .2 to .45.
+  double unbound = 0.25;
   double unbound_whole =
       0.1;  // or this where the track is as high and wide as the person: that one was lost in the picture
   double agrees = 0.6;  // a look shows the person where the track is,
@@ -57,10 +59,6 @@ struct VerificationParameters {
   double place_gain = 0.7, size_gain = 0.4;  // of a detection, against the box that was followed
   double velocity_gain = 0.5;                // of the velocity between the last two detections
   double track_gain = 0.5;                   // of a track, each frame. swept: docs/quality.md, .3 and .5
-  // Shares of the box that is followed above the head and below the feet: the published one is without them. Measured:
-  // medians of head and foot, -.026 and +.028 on PETS09-S2L1, -.035 and 0 on TUD-Campus, -.028 and +.035 on
-  // TUD-Stadtmitte.
-  double above_head = 0.03, below_feet = 0.02;
 
   // The line of the heights (height_line.cpp). Shares of a person's height, but for the slope.
   double line_noise = 0.07;  // of a detection's height about the line. Measured: .05 of true boxes
