@@ -30,7 +30,7 @@ struct TrackOptions {
 
 struct Track {
   std::uint32_t id = 0;   // from 1, never used again in a stream
-  Box box;                // frame pixels, clamped to the frame
+  Box box;                // frame pixels, clamped to the frame; published without_edge (box_edge.h)
   double vx = 0, vy = 0;  // frame pixels a second relative to the scene, camera motion taken out
   double top_speed =
       0;           // frame pixels a second, the highest since confirmed: a lower limit is compared with it
