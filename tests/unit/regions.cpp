@@ -212,6 +212,18 @@ START_TEST(a_leg_in_stride_is_part_of_the_box_on_either_side_and_a_flat_shadow_i
 }
 END_TEST
 
+// As high as a knee at the trunk, and a quarter of a row lower with every column.
+START_TEST(a_shadow_that_tapers_is_no_leg) {
+  RegionFinder finder = settled();
+  Picture picture;
+  picture.fill(160, 20, 175, 100);
+  for (int k = 0; k < 28; ++k) picture.fill(175 + k, 80 + k / 4, 176 + k, 100);
+  const auto regions = picture.find(finder);
+  ck_assert_uint_eq(regions.size(), 1);
+  ck_assert_double_le(regions[0].box.right(), 180);
+}
+END_TEST
+
 START_TEST(two_people_arm_in_arm_are_one_region_before_and_two_after_people_were_seen) {
   RegionFinder finder;
   Picture picture;
@@ -654,6 +666,7 @@ int main() {
                   a_low_shadow_on_the_floor_is_not_part_of_the_box,
                   an_outstretched_arm_is_part_of_the_box_and_a_swaying_tape_is_not,
                   a_leg_in_stride_is_part_of_the_box_on_either_side_and_a_flat_shadow_is_not,
+                  a_shadow_that_tapers_is_no_leg,
                   two_people_arm_in_arm_are_one_region_before_and_two_after_people_were_seen,
                   two_people_whose_heads_are_seen_are_two_once_they_have_walked,
                   two_people_who_stand_are_a_group_before_any_height_is_known,
