@@ -195,6 +195,8 @@ gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
                                              : kDaimlerThreshold;
     state.verifier.set_margins(model ? 0 : cerberus::plugin::kAboveHead,
                                model ? 0 : cerberus::plugin::kBelowFeet);
+    // A network takes as long for a small region as for a large one.
+    state.verifier.set_most_regions(model ? 1 : vision::LookRegions::kMost);
     state.certain = std::max(model ? kModelCertain : kDaimlerCertain, state.threshold);
     const double least = state.verifier.least_score(state.threshold);
     std::string wrong;
@@ -315,8 +317,6 @@ void take_in(State& state, GstClockTime now) {
   if (state.live.value_or(true) ? !state.worker.is_done() : now < state.pending->time + kDelay) return;
   std::vector<vision::PersonDetection>& hits = state.worker.wait();
   const Pending pending = *std::exchange(state.pending, std::nullopt);
-  for (vision::PersonDetection& hit : hits)
-    hit.box.x += pending.look.region.x, hit.box.y += pending.look.region.y;
   for (const vision::PersonDetection& hit : hits)
     GST_LOG("%" GST_TIME_FORMAT ": %.0f,%.0f %.0fx%.0f, score %.2f", GST_TIME_ARGS(pending.time), hit.box.x,
             hit.box.y, hit.box.width, hit.box.height, hit.score);
@@ -332,16 +332,18 @@ void look(State& state, const vision::LumaSource& source, GstClockTime now, cons
   if (state.pending || now < state.next_look) return;
   const auto chosen = state.verifier.choose();
   if (!chosen) return;
-  const auto& region = chosen->region;
-  GST_LOG("%" GST_TIME_FORMAT ": looks at %d,%d %dx%d, scale %.2f", GST_TIME_ARGS(now), region.x, region.y,
-          region.width, region.height, region.scale);
-  vision::Image<std::uint8_t>& picture = state.worker.picture();
-  picture.resize({region.width, region.height});
-  vision::LumaSource part = source;
-  part.data += region.y * part.stride + static_cast<std::ptrdiff_t>(region.x) * part.pixel_stride;
-  part.width = region.width, part.height = region.height;
-  state.crop_scaler.scale(part, picture.view());
-  state.worker.begin(region.scale);
+  std::size_t number = 0;
+  for (const vision::LookRegion& region : chosen->regions.chosen()) {
+    GST_LOG("%" GST_TIME_FORMAT ": looks at %d,%d %dx%d, scale %.2f", GST_TIME_ARGS(now), region.x, region.y,
+            region.width, region.height, region.scale);
+    vision::Image<std::uint8_t>& picture = state.worker.picture(number++);
+    picture.resize({region.width, region.height});
+    vision::LumaSource part = source;
+    part.data += region.y * part.stride + static_cast<std::ptrdiff_t>(region.x) * part.pixel_stride;
+    part.width = region.width, part.height = region.height;
+    state.crop_scaler.scale(part, picture.view());
+  }
+  state.worker.begin(chosen->regions);
   state.pending = Pending{*chosen, now};
   // On the beat, unless there was nothing to look at for some time.
   state.next_look = (now - state.next_look > period / 2 ? now : state.next_look) + period;

@@ -168,21 +168,48 @@ END_TEST
 
 START_TEST(the_most_doubtful_box_is_looked_at_with_neighbours_that_fit) {
   const VerificationParameters p;
-  const std::array<LookTarget, 4> targets{{{{300, 100, 40, 90}, 3, 90},
-                                           {{350, 105, 40, 80}, 1, 80},
-                                           {{20, 900, 40, 90}, 1, 90},
-                                           {{500, 100, 9, 12}, 9, 12}}};
-  const auto look = choose_look(targets, {2000, 1500}, p);
-  ck_assert(look.has_value());
+  std::array<LookTarget, 4> targets{{{{300, 100, 40, 90}, 3, 90},
+                                     {{350, 105, 40, 80}, 1, 80},
+                                     {{20, 900, 40, 90}, 1, 90},
+                                     {{500, 100, 9, 12}, 9, 12}}};
+  const LookRegions chosen = choose_look(targets, {2000, 1500}, 1, p);
+  ck_assert_uint_eq(chosen.count, 1);
+  const LookRegion* look = chosen.all.data();
   ck_assert_double_eq_tol(look->scale, p.look_height / 80, 1e-9);  // of the lowest who is looked for
   ck_assert(look->x < 300 && look->x + look->width > 390 && look->y < 100 && look->y + look->height > 195);
   ck_assert(look->width * look->height * look->scale * look->scale <= p.most_area * 1.05);
   ck_assert(look->y + look->height < 900);
-  ck_assert(!choose_look({}, {2000, 1500}, p));
+  ck_assert_uint_eq(choose_look({}, {2000, 1500}, 1, p).count, 0);
   // A group as wide as the picture is cut to what a look may cost.
-  const std::array<LookTarget, 1> wide{{{{0, 100, 2000, 90}, 1, 90}}};
-  const auto middle = choose_look(wide, {2000, 1500}, p);
-  ck_assert(middle->width * middle->height * middle->scale * middle->scale <= p.most_area * 1.05);
+  std::array<LookTarget, 1> wide{{{{0, 100, 2000, 90}, 1, 90}}};
+  const LookRegion middle = choose_look(wide, {2000, 1500}, 1, p).all[0];
+  ck_assert(middle.width * middle.height * middle.scale * middle.scale <= p.most_area * 1.05);
+}
+END_TEST
+
+START_TEST(somebody_farther_away_is_shown_in_a_region_and_at_a_scale_of_its_own) {
+  const VerificationParameters p;
+  const std::array<LookTarget, 3> all{
+      {{{100, 100, 80, 240}, 2, 240}, {{230, 100, 80, 230}, 2, 230}, {{320, 110, 32, 100}, 1, 100}}};
+  auto targets = all;
+  const LookRegions look = choose_look(targets, {640, 480}, LookRegions::kMost, p);
+  ck_assert_uint_eq(look.count, 2);
+  ck_assert_double_eq_tol(look.all[0].scale, p.look_height / 230, 1e-9);
+  ck_assert_double_eq_tol(look.all[1].scale, p.look_height / 100, 1e-9);
+  ck_assert(look.all[1].x < 320 && look.all[1].x + look.all[1].width > 352);
+  double area = 0;
+  for (const LookRegion& each : look.chosen()) area += each.width * each.height * each.scale * each.scale;
+  ck_assert_double_le(area, p.most_area * 1.01);
+  for (const LookTarget& each : targets) ck_assert_double_eq(each.doubt, 0);
+  // The small one lies in the first region as well, where it is too small to be seen.
+  LookRegions near = look;
+  near.count = 1;
+  ck_assert(shows(near, all[0].box, 240, p) && shows(near, all[1].box, 230, p));
+  ck_assert(!shows(near, all[2].box, 100, p) && shows(look, all[2].box, 100, p));
+  // One region where that is all that a detector is to see.
+  targets = all;
+  ck_assert_uint_eq(choose_look(targets, {640, 480}, 1, p).count, 1);
+  ck_assert_double_eq(targets[2].doubt, 1);
 }
 END_TEST
 
@@ -351,14 +378,16 @@ START_TEST(the_worker_returns_what_its_detector_found_or_threw) {
   LookWorker worker;
   worker.start(std::make_unique<Scripted>());
   for (const double scale : {2.0, 3.0}) {
-    worker.picture().resize({30, 60});
-    worker.begin(scale);
+    worker.picture(0).resize({30, 60});
+    worker.picture(1).resize({10, 20});
+    worker.begin({{{{7, 5, 30, 60, scale}, {100, 90, 10, 20, 1}}}, 2});
     const auto& hits = worker.wait();
-    ck_assert_uint_eq(hits.size(), 1);
+    ck_assert_uint_eq(hits.size(), 2);
     ck_assert_double_eq(hits[0].score, scale);
-    ck_assert_double_eq(hits[0].box.height, 60);
+    ck_assert(hits[0].box.x == 7 && hits[0].box.y == 5 && hits[0].box.height == 60);  // in the frame
+    ck_assert(hits[1].score == 1 && hits[1].box.x == 100 && hits[1].box.y == 90 && hits[1].box.height == 20);
   }
-  worker.begin(10);
+  worker.begin({{{{0, 0, 30, 60, 10}}}, 1});
   bool thrown = false;
   try {
     worker.wait();
@@ -366,7 +395,7 @@ START_TEST(the_worker_returns_what_its_detector_found_or_threw) {
     thrown = true;
   }
   ck_assert(thrown);
-  worker.begin(1);  // in progress at the end
+  worker.begin({{{{0, 0, 30, 60, 1}}}, 1});  // in progress at the end
   worker.stop();
   ck_assert(!worker.is_running());
 }
@@ -450,8 +479,9 @@ START_TEST(a_person_whom_no_track_shows_is_found_where_the_picture_changes) {
     look = rig.verifier.choose();
     ck_assert(look.has_value());
     const Box person = person_at(228);
-    ck_assert(look->region.x <= person.x && look->region.x + look->region.width >= person.right());
-    ck_assert(look->region.y <= person.y && look->region.y + look->region.height >= person.bottom());
+    const LookRegion& region = look->regions.all[0];
+    ck_assert(region.x <= person.x && region.x + region.width >= person.right());
+    ck_assert(region.y <= person.y && region.y + region.height >= person.bottom());
     rig.found(*look, {{person, 2}, {person_at(450), 3}});  // not certain; nothing changes at the second place
     ck_assert_uint_eq(rig.result().size(), walks ? 1 : 0);
     if (walks) ck_assert_double_eq_tol(rig.result()[0].box.x, 228, 4);
@@ -473,6 +503,7 @@ int main() {
        hits_of_one_person_become_their_weighted_mean_and_parts_of_it_are_dropped,
        a_patch_is_found_where_it_went_and_between_pixels,
        the_most_doubtful_box_is_looked_at_with_neighbours_that_fit,
+       somebody_farther_away_is_shown_in_a_region_and_at_a_scale_of_its_own,
        a_detection_makes_its_track_a_person_with_the_tracks_identity,
        two_people_in_one_track_are_followed_with_identities_of_their_own,
        a_track_that_persons_cover_in_part_is_a_group,

@@ -45,13 +45,23 @@ bool PersonVerifier::is_covered(std::size_t i, std::uint64_t frame) const {
   return false;
 }
 
-// Legs, or a torso, of a person or a person-like track.
+// Legs, or a torso, of a person or a person-like track. Of somebody who is as high as people are there, more must lie in the
+// whole: it may be a person beside a wide box.
 bool PersonVerifier::is_part(const Box& box) const {
-  const auto is_of = [&](const Box& whole) { return is_part_of(box, whole, p_.part, p_); };
+  const double share = line_.judge(box, p_) == HeightLine::Fit::fits ? p_.part_fits : p_.part;
+  const auto is_of = [&](const Box& whole) { return is_part_of(box, whole, share, p_); };
   return std::ranges::any_of(people_, [&](const Person& q) { return is_of(q.box()); }) ||
          std::ranges::any_of(candidates_, [&](const Candidate& c) {
            return c.kind == RegionKind::person_like && is_of(c.box);
          });
+}
+
+// Legs, or a torso, of a person but for this one whom looks have shown repeatedly. It shows nobody behind.
+bool PersonVerifier::is_part_of_another(const Box& box, std::size_t i, std::uint64_t frame) const {
+  for (std::size_t k = 0; k < hit_.size(); ++k)
+    if (k != i && people_[k].looks() > 1 && is_part_of(box, people_[k].box_at(frame), p_.part_another, p_))
+      return true;
+  return false;
 }
 
 // The look shows the whole of which this person was a part. Whoever is as high as people are where the feet are is no
@@ -115,7 +125,9 @@ void PersonVerifier::confirm_known(std::vector<PersonDetection>& found, std::uin
     double best = p_.same;
     for (std::size_t i = 0; i < found.size(); ++i)
       for (std::size_t k = 0; k < hit_.size(); ++k) {
-        const double fit = hit_[k] ? 0 : likeness(people_[k], found[i].box, frame);
+        const Box& box = found[i].box;
+        const double fit =
+            hit_[k] || is_part_of_another(box, k, frame) ? 0 : likeness(people_[k], box, frame);
         if (fit >= best) best = fit, same = &people_[k], index = i;
       }
     if (!same) return;
@@ -148,15 +160,16 @@ void PersonVerifier::add(const PersonDetection& found, std::uint64_t frame, cons
   people_.push_back(person);
 }
 
-// Persons in the region of the look whom it does not show, though nobody hides them.
-void PersonVerifier::miss(const Box& seen, std::uint64_t frame, std::size_t known) {
+// Persons in a region of the look, at a scale at which the detector sees them, whom it does not show, though nobody hides
+// them.
+void PersonVerifier::miss(const Look& look, std::size_t known) {
   for (std::size_t i = 0; i < known; ++i) {
     Person& person = people_[i];
     if (hit_[i]) continue;
     if (is_absorbed(i))
       person.evidence = 0;
-    else if (person.age > 0 && share_within(pictures_.seen(person.box()), seen) > p_.in_look &&
-             !is_covered(i, frame))
+    else if (person.age > 0 && shows(look.regions, pictures_.seen(person.box()), person.box().height, p_) &&
+             !is_covered(i, look.frame))
       person.evidence -= 1, person.missed = true;
   }
   forget_if([](const Person& person) { return person.evidence <= 0; });
@@ -172,12 +185,10 @@ void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> hi
   confirm_known(found_, look.frame, scores);
   for (const PersonDetection& found : found_) add(found, look.frame, scores);
   confirm_known(weak_, look.frame, scores);
-  const LookRegion& r = look.region;
-  const Box seen{double(r.x), double(r.y), double(r.width), double(r.height)};
-  miss(seen, look.frame, known);
+  miss(look, known);
   bind();
   for (const Candidate& each : candidates_) {
-    if (share_within(each.box, seen) < p_.in_look) continue;
+    if (!shows(look.regions, each.box, each.box.height, p_)) continue;
     bool explained = false;
     for (const Person& person : people_)
       explained = explained || person.track == each.id || share_within(person.box(), each.box) >= p_.inside;

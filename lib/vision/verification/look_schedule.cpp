@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace cerberus::vision {
 
 namespace {
+
+// Of a region's area, whose sides are whole pixels.
+constexpr double kRounded = 1.01;
 
 Box around(const Box& a, const Box& b) {
   const double x = std::min(a.x, b.x), y = std::min(a.y, b.y);
@@ -21,10 +25,22 @@ Box padded(const Box& box, Size frame, const VerificationParameters& p) {
           std::clamp(box.bottom() + above, y + 1, double(frame.height)) - y};
 }
 
-}  // namespace
+Box box_of(const LookRegion& region) {
+  return {double(region.x), double(region.y), double(region.width), double(region.height)};
+}
 
-std::optional<LookRegion> choose_look(std::span<const LookTarget> targets, Size frame,
-                                      const VerificationParameters& p) {
+// Scaled pixels.
+double area_of(const LookRegion& region) {
+  return region.width * region.scale * region.height * region.scale;
+}
+
+bool shows(const LookRegion& region, const Box& box, double height, const VerificationParameters& p) {
+  return share_within(box, box_of(region)) > p.in_look && height * region.scale >= p.fine * p.look_height;
+}
+
+// area: scaled pixels that the region may have.
+std::optional<LookRegion> choose_region(std::span<const LookTarget> targets, Size frame, double area,
+                                        const VerificationParameters& p) {
   const LookTarget* first = nullptr;
   for (const LookTarget& target : targets)
     if (target.doubt > 0 && target.height >= p.least_height && (!first || target.doubt > first->doubt))
@@ -32,9 +48,7 @@ std::optional<LookRegion> choose_look(std::span<const LookTarget> targets, Size 
   if (!first || frame.width < 2 || frame.height < 2) return std::nullopt;
   double height = first->height;  // of the lowest person who is looked for
   const auto scale = [&](double lowest) { return std::min(p.look_height / lowest, p.most_scale); };
-  const auto most = [&](double lowest) {
-    return p.most_area / (scale(lowest) * scale(lowest));
-  };  // frame pixels
+  const auto most = [&](double lowest) { return area / (scale(lowest) * scale(lowest)); };  // frame pixels
   Box region = padded(first->box, frame, p);
   for (;;) {
     const LookTarget* best = nullptr;
@@ -64,6 +78,27 @@ std::optional<LookRegion> choose_look(std::span<const LookTarget> targets, Size 
   look.height = std::clamp(static_cast<int>(std::ceil(region.bottom())) - look.y, 1, frame.height - look.y);
   look.scale = scale(height);
   return look;
+}
+
+}  // namespace
+
+LookRegions choose_look(std::span<LookTarget> targets, Size frame, std::size_t most,
+                        const VerificationParameters& p) {
+  LookRegions look;
+  double left = p.most_area;
+  while (look.count < std::min(most, LookRegions::kMost)) {
+    const auto region = choose_region(targets, frame, left, p);
+    if (!region || area_of(*region) > left * kRounded) break;
+    look.all[look.count++] = *region, left -= area_of(*region);
+    for (LookTarget& target : targets)
+      if (shows(*region, target.box, target.height, p)) target.doubt = 0;
+  }
+  return look;
+}
+
+bool shows(const LookRegions& look, const Box& box, double height, const VerificationParameters& p) {
+  return std::ranges::any_of(look.chosen(),
+                             [&](const LookRegion& region) { return shows(region, box, height, p); });
 }
 
 }  // namespace cerberus::vision

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which part of the frame the detector is to see next.
+// Which parts of the frame the detector is to see next.
 #pragma once
 
-#include <optional>
+#include <array>
+#include <cstddef>
 #include <span>
 
 #include "vision/geometry/box.h"
@@ -22,10 +23,23 @@ struct LookRegion {
   double scale = 1;                         // by which the detector enlarges it
 };
 
-// Returns the region around the most doubtful target, and around further targets of similar height as far as the area
-// of a look allows, those with the most doubt for their area first. nullopt: no target has any doubt, or is high
-// enough.
-std::optional<LookRegion> choose_look(std::span<const LookTarget> targets, Size frame,
-                                      const VerificationParameters& p);
+// What one look shows to the detector: regions of the frame, each at a scale of its own, since a window of the detector that
+// fits somebody near does not see somebody far away, and one that does takes a torso near the camera for a person.
+struct LookRegions {
+  static constexpr std::size_t kMost = 2;  // more change nothing. swept: docs/quality.md
+  std::array<LookRegion, kMost> all;
+  std::size_t count = 0;
+  std::span<const LookRegion> chosen() const { return {all.data(), count}; }
+};
+
+// Returns up to `most` regions (LookRegions::kMost at most), none where no target has any doubt, or is high enough. Each
+// is that around the most doubtful target that the earlier ones do not show, and around further targets of similar
+// height, those with the most doubt for their area first, as far as the area of a look allows. The doubt of targets that
+// are shown becomes 0.
+LookRegions choose_look(std::span<LookTarget> targets, Size frame, std::size_t most,
+                        const VerificationParameters& p);
+
+// A region holds the box, and enlarges it so much that the detector can see somebody as high as `height`, frame pixels.
+bool shows(const LookRegions& look, const Box& box, double height, const VerificationParameters& p);
 
 }  // namespace cerberus::vision

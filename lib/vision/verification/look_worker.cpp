@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "vision/verification/look_worker.h"
 
+#include <span>
+
 namespace cerberus::vision {
 
 void LookWorker::start(std::unique_ptr<PersonDetector> detector) {
@@ -21,10 +23,10 @@ void LookWorker::stop() {
   detector_.reset();
 }
 
-void LookWorker::begin(double scale) {
+void LookWorker::begin(const LookRegions& regions) {
   {
     const std::lock_guard guard(lock_);
-    scale_ = scale;
+    regions_ = regions;
     stage_ = Stage::asked;
   }
   changed_.notify_all();
@@ -48,12 +50,17 @@ void LookWorker::run() {
   for (;;) {
     changed_.wait(guard, [&] { return stage_ == Stage::asked || stage_ == Stage::ended; });
     if (stage_ == Stage::ended) return;
-    const double scale = scale_;
     guard.unlock();
     hits_.clear();
     std::exception_ptr failure;
     try {
-      detector_->detect(picture_.view(), scale, hits_);
+      for (std::size_t i = 0; i < regions_.count; ++i) {
+        const LookRegion& region = regions_.all[i];
+        const std::size_t earlier = hits_.size();
+        detector_->detect(pictures_[i].view(), region.scale, hits_);
+        for (PersonDetection& hit : std::span(hits_).subspan(earlier))
+          hit.box.x += region.x, hit.box.y += region.y;
+      }
     } catch (...) {
       failure = std::current_exception();
     }

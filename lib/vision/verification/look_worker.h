@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A detector on a thread of its own, one picture at a time.
+// A detector on a thread of its own, one look at a time.
 #pragma once
 
+#include <array>
 #include <condition_variable>
 #include <exception>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "vision/verification/look_schedule.h"
 #include "vision/verification/person_detector.h"
 
 namespace cerberus::vision {
@@ -26,13 +28,14 @@ class LookWorker {
   void stop();
   bool is_running() const { return thread_.joinable(); }
 
-  // The memory of the next picture: filled by the caller while no look is in progress.
-  Image<std::uint8_t>& picture() { return picture_; }
-  // Begins a look at picture(). Call it only when none is in progress.
-  void begin(double scale);
+  // The memory of the next look's picture of this number, below LookRegions::kMost: filled by the caller while no look is
+  // in progress, with what the region shows.
+  Image<std::uint8_t>& picture(std::size_t number) { return pictures_[number]; }
+  // Begins a look at these pictures. Call it only when none is in progress.
+  void begin(const LookRegions& regions);
   // Whether the result of the last look is there.
   bool is_done() const;
-  // Waits for the look in progress, and returns its hits, in pixels of picture(); they live until the next begin().
+  // Waits for the look in progress, and returns its hits, in pixels of the frame; they live until the next begin().
   // Throws what the detector has thrown.
   std::vector<PersonDetection>& wait();
 
@@ -41,9 +44,9 @@ class LookWorker {
   void run();
 
   std::unique_ptr<PersonDetector> detector_;
-  Image<std::uint8_t> picture_;
+  std::array<Image<std::uint8_t>, LookRegions::kMost> pictures_;
+  LookRegions regions_;
   std::vector<PersonDetection> hits_;
-  double scale_ = 1;
   std::exception_ptr failure_;
   mutable std::mutex lock_;  // of stage_
   std::condition_variable changed_;

@@ -220,15 +220,17 @@ std::optional<PersonVerifier::Look> PersonVerifier::choose() {
         {{place.box.x * across, place.box.y * down, place.box.width * across, place.box.height * down},
          p_.place_doubt * place.doubt,
          p_.in_group * place.box.height * down});
-  const auto region = choose_look(targets_, pictures_.frame(), p_);
-  if (!region) return std::nullopt;
-  const Box seen{double(region->x), double(region->y), double(region->width), double(region->height)};
-  changes_.looked(pictures_.reduced(seen));
-  for (const Candidate& each : candidates_)
-    if (share_within(each.box, seen) > p_.in_look) record(each.id).since_look = 0;
-  for (Person& each : people_)
-    if (share_within(pictures_.seen(each.box()), seen) > p_.in_look) each.since_look = 0;
-  return Look{*region, pictures_.number()};
+  const LookRegions regions = choose_look(targets_, pictures_.frame(), most_regions_, p_);
+  if (regions.count == 0) return std::nullopt;
+  for (const LookRegion& region : regions.chosen()) {
+    const Box seen{double(region.x), double(region.y), double(region.width), double(region.height)};
+    changes_.looked(pictures_.reduced(seen));
+    for (const Candidate& each : candidates_)
+      if (share_within(each.box, seen) > p_.in_look) record(each.id).since_look = 0;
+    for (Person& each : people_)
+      if (share_within(pictures_.seen(each.box()), seen) > p_.in_look) each.since_look = 0;
+  }
+  return Look{regions, pictures_.number()};
 }
 
 std::span<const VerifiedRegion> PersonVerifier::result() {

@@ -49,7 +49,7 @@ class PersonVerifier {
  public:
   // A look that was taken: pass it back with what was found.
   struct Look {
-    LookRegion region;
+    LookRegions regions;
     std::uint64_t frame = 0;  // number
   };
   // First identity of persons without a track of their own; tracks count from 1.
@@ -63,6 +63,8 @@ class PersonVerifier {
   void set_margins(double above_head, double below_feet) {
     above_head_ = above_head, below_feet_ = below_feet;
   }
+  // Regions of a look, LookRegions::kMost at most and until it is set: 1 where each costs the same, whatever its size.
+  void set_most_regions(std::size_t most) { most_regions_ = most; }
   // The score down to which hits are of use: see VerificationParameters::weak.
   double least_score(double threshold) const { return p_.weak * threshold; }
   // The next frame. picture: its luma, reduced (any size, the same in every frame of a stream); motion: frame k-1 to k
@@ -126,6 +128,7 @@ class PersonVerifier {
   bool is_owned(std::uint32_t id) const;
   void take_persons(std::span<const PersonDetection> hits, double threshold);
   bool is_part(const Box& box) const;
+  bool is_part_of_another(const Box& box, std::size_t i, std::uint64_t frame) const;
   bool is_shown_by_look(std::size_t i) const;
   bool is_covered(std::size_t i, std::uint64_t frame) const;
   bool is_absorbed(std::size_t i) const;
@@ -133,7 +136,7 @@ class PersonVerifier {
   void confirm_known(std::vector<PersonDetection>& found, std::uint64_t frame, const Scores& scores);
   void confirm(Person& person, const PersonDetection& found, std::uint64_t frame, const Scores& scores);
   void add(const PersonDetection& found, std::uint64_t frame, const Scores& scores);
-  void miss(const Box& seen, std::uint64_t frame, std::size_t known);
+  void miss(const Look& look, std::size_t known);
   double share_on_tracks(const Box& box) const;
   bool is_whole(const Candidate& c, const Person& person) const;
   void bind(Person& person, std::size_t candidate);
@@ -155,6 +158,7 @@ class PersonVerifier {
   std::vector<char> taken_, hit_;  // of candidates, of people
   std::vector<LookTarget> targets_;
   PictureHistory pictures_;
+  std::size_t most_regions_ = LookRegions::kMost;
   std::uint32_t next_own_ = kFirstOwn;
   double seconds_ = 0, period_ = 0.25, above_head_ = 0, below_feet_ = 0;
 };
