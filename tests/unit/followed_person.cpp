@@ -363,6 +363,59 @@ START_TEST(a_part_that_was_taken_for_a_person_ends_when_a_look_shows_the_whole) 
 }
 END_TEST
 
+// A wide box of a track beside somebody who is as high as people are there holds more than half of the person.
+START_TEST(who_is_as_high_as_people_are_is_no_part_of_a_box_beside) {
+  for (const bool within : {false, true}) {
+    Rig rig;
+    for (const double foot : {260, 270, 275, 280, 285, 288, 265, 330, 340, 350})
+      rig.look({{standing(foot), 3}});
+    for (int n = 0; n < 3; ++n) rig.look({});
+    const Box far = standing(240);  // of .57 of the box's height; .81 of it is beside or behind the box
+    Box wide = standing(345);
+    wide.width = 150, wide.x = far.x + (within ? 0 : 0.32 * far.width);
+    rig.tracks.push_back({.id = 3, .box = wide});
+    rig.look({{far, 3}});
+    ck_assert_int_eq(std::ranges::count_if(rig.verifier.result(), &VerifiedRegion::person), within ? 0 : 1);
+  }
+}
+END_TEST
+
+// Before a camera at the height of heads, where a torso is as high as somebody farther away. Every other look shows the torso
+// alone.
+START_TEST(a_part_of_a_nearer_person_does_not_show_who_is_behind) {
+  for (const bool within : {true, false}) {
+    Rig rig;
+    for (const double foot : {260, 270, 275, 280, 285, 288, 265, 330, 340, 350})
+      rig.look({{standing(foot, 1.25), 3}});
+    for (int n = 0; n < 3; ++n) rig.look({});
+    const Box far = standing(240, 1.25);
+    Box near = standing(340, 1.25);
+    near.x = far.x + (within ? -10 : 0.45 * far.width);
+    for (int n = 0; n < 3; ++n) rig.look({{far, 3}});
+    for (int n = 0; n < 3; ++n) rig.look({{near, 3}});
+    const auto persons = [&] {
+      return std::ranges::count_if(rig.verifier.result(), &VerifiedRegion::person);
+    };
+    ck_assert_int_eq(persons(), 2);
+    for (int n = 0; n < 30; ++n) rig.look({{far, 3}}), rig.look({{near, 3}});
+    ck_assert_int_eq(persons(), within ? 1 : 2);
+  }
+}
+END_TEST
+
+START_TEST(a_look_in_which_a_person_is_too_small_to_be_seen_misses_nobody) {
+  Rig rig;
+  rig.look({{person_at(200), 3}});
+  for (const double scale : {0.4, 0.6}) {  // 64 rows of the person, and 96
+    rig.frames(1);
+    auto look = *rig.verifier.choose();
+    look.regions = {{{{0, 0, kFrame.width, kFrame.height, scale}}}, 1};
+    rig.verifier.apply(look, {}, 1.7, 3.7);
+    ck_assert_int_eq(rig.person() != nullptr, scale < 0.5);
+  }
+}
+END_TEST
+
 START_TEST(a_detection_of_another_height_does_not_show_the_person) {
   Rig rig;
   rig.look({{Box{200, 90, 70, 190}, 3}});
@@ -396,5 +449,8 @@ int main() {
        who_is_hidden_by_a_nearer_person_is_not_refuted_for_a_second,
        who_is_small_because_farther_away_is_no_part_of_the_nearer_person,
        a_part_that_was_taken_for_a_person_ends_when_a_look_shows_the_whole,
+       who_is_as_high_as_people_are_is_no_part_of_a_box_beside,
+       a_part_of_a_nearer_person_does_not_show_who_is_behind,
+       a_look_in_which_a_person_is_too_small_to_be_seen_misses_nobody,
        a_detection_of_another_height_does_not_show_the_person});
 }

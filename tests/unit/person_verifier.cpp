@@ -184,6 +184,9 @@ START_TEST(the_most_doubtful_box_is_looked_at_with_neighbours_that_fit) {
   std::array<LookTarget, 1> wide{{{{0, 100, 2000, 90}, 1, 90}}};
   const LookRegion middle = choose_look(wide, {2000, 1500}, 1, p).all[0];
   ck_assert(middle.width * middle.height * middle.scale * middle.scale <= p.most_area * 1.05);
+  // Nothing is left of the look's area for somebody small elsewhere.
+  std::array<LookTarget, 2> both{{{{0, 100, 4000, 90}, 2, 90}, {{1000, 900, 12, 30}, 1, 30}}};
+  ck_assert_uint_eq(choose_look(both, {4000, 1500}, LookRegions::kMost, p).count, 1);
 }
 END_TEST
 

@@ -38,7 +38,7 @@ bool shows(const LookRegion& region, const Box& box, double height, const Verifi
   return share_within(box, box_of(region)) > p.in_look && height * region.scale >= p.fine * p.look_height;
 }
 
-// area: scaled pixels that the region may have.
+// area: scaled pixels that the region may have. nullopt also where that is less than a look's, and too little.
 std::optional<LookRegion> choose_region(std::span<const LookTarget> targets, Size frame, double area,
                                         const VerificationParameters& p) {
   const LookTarget* first = nullptr;
@@ -68,6 +68,7 @@ std::optional<LookRegion> choose_region(std::span<const LookTarget> targets, Siz
     height = std::min(height, best->height);
   }
   if (region.area() > most(height)) {  // one group that is too wide: its middle
+    if (area < p.most_area) return std::nullopt;
     const double width = std::min(region.width, most(height) / region.height);
     region.x += (region.width - width) / 2;
     region.width = width;
