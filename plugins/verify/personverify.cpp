@@ -24,7 +24,8 @@
  * track that such a hit alone shows is published as it was.
  *
  * The detector is OpenCV's one for pedestrians (histograms of oriented gradients, trained on the Daimler data set):
- * upright people who are at least 24 pixels high. It costs up to 60 ms a look on one core. It does not see people who
+ * upright people who are at least 24 pixels high. A look shows it up to two regions, as those near the camera and those far
+ * away need different scales; a network sees one. It costs up to 60 ms a look on one core. It does not see people who
  * sit or lie, or only their upper half.
  *
  * `model` names a network instead: an ONNX file whose input has a fixed size (1 x 3 x height x width, values 0 to 1),
