@@ -196,8 +196,7 @@ gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
                                              : kDaimlerThreshold;
     state.verifier.set_margins(model ? 0 : cerberus::plugin::kAboveHead,
                                model ? 0 : cerberus::plugin::kBelowFeet);
-    // A network takes as long for a small region as for a large one.
-    state.verifier.set_most_regions(model ? 1 : vision::LookRegions::kMost);
+    if (model) state.verifier.set_fits_regions();
     state.certain = std::max(model ? kModelCertain : kDaimlerCertain, state.threshold);
     const double least = state.verifier.least_score(state.threshold);
     std::string wrong;

@@ -181,12 +181,18 @@ START_TEST(the_most_doubtful_box_is_looked_at_with_neighbours_that_fit) {
   ck_assert(look->y + look->height < 900);
   ck_assert_uint_eq(choose_look({}, {2000, 1500}, 1, p).count, 0);
   // A group as wide as the picture is cut to what a look may cost.
-  std::array<LookTarget, 1> wide{{{{0, 100, 2000, 90}, 1, 90}}};
-  const LookRegion middle = choose_look(wide, {2000, 1500}, 1, p).all[0];
+  std::array<LookTarget, 1> wide{{{{0, 100, 4000, 90}, 1, 90}}};
+  const LookRegion middle = choose_look(wide, {4000, 1500}, 1, p).all[0];
+  ck_assert_int_lt(middle.width, 4000);
   ck_assert(middle.width * middle.height * middle.scale * middle.scale <= p.most_area * 1.05);
-  // Nothing is left of the look's area for somebody small elsewhere.
-  std::array<LookTarget, 2> both{{{{0, 100, 4000, 90}, 2, 90}, {{1000, 900, 12, 30}, 1, 30}}};
+  // Also a low one, of which whole pixels are a larger share.
+  std::array<LookTarget, 1> low{{{{3, 100, 630, 40}, 1, 26}}};
+  ck_assert_uint_eq(choose_look(low, {640, 480}, 1, p).count, 1);
+  // A further region has what the first one leaves, and is not cut.
+  std::array<LookTarget, 2> both{{{{0, 100, 1200, 90}, 2, 90}, {{0, 900, 3900, 200}, 1, 200}}};
   ck_assert_uint_eq(choose_look(both, {4000, 1500}, LookRegions::kMost, p).count, 1);
+  std::array<LookTarget, 2> also_small{{{{0, 100, 1800, 90}, 2, 90}, {{0, 900, 12, 30}, 1, 30}}};
+  ck_assert_uint_eq(choose_look(also_small, {2000, 1500}, LookRegions::kMost, p).count, 2);
 }
 END_TEST
 
@@ -215,10 +221,34 @@ START_TEST(somebody_farther_away_is_shown_in_a_region_and_at_a_scale_of_its_own)
   ck_assert_double_eq(targets[2].doubt, 1);
   for (const std::size_t most : {1, 2}) {
     Rig rig;
-    rig.verifier.set_most_regions(most);
+    if (most == 1) rig.verifier.set_fits_regions();
     rig.frame({all[0].box}, {{.id = 1, .box = all[0].box}, {.id = 2, .box = all[2].box}});
     ck_assert_uint_eq(rig.verifier.choose()->regions.count, most);
   }
+}
+END_TEST
+
+// Three of different heights: the lowest lies in the region of the highest, and no region is left.
+START_TEST(who_was_too_small_in_a_look_comes_first_in_the_next) {
+  Rig rig;
+  const std::vector<Candidate> tracks{{.id = 1, .box = {100, 100, 80, 240}},
+                                      {.id = 2, .box = {230, 100, 32, 100}},
+                                      {.id = 3, .box = {185, 110, 16, 45}}};
+  rig.frame({}, tracks);
+  const auto first = rig.verifier.choose();
+  ck_assert_uint_eq(first->regions.count, 2);
+  rig.found(*first, {});
+  rig.frame({}, tracks);
+  ck_assert_double_eq_tol(rig.verifier.choose()->regions.all[0].scale,
+                          VerificationParameters{}.look_height / 45, 1e-9);
+}
+END_TEST
+
+START_TEST(whom_the_frames_edge_cuts_is_shown_once_a_look) {
+  Rig rig;
+  const Box cut{600, 100, 80, 160};  // half of it
+  rig.frame({cut}, {{.id = 1, .box = cut}});
+  ck_assert_uint_eq(rig.verifier.choose()->regions.count, 1);
 }
 END_TEST
 
@@ -507,12 +537,15 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "person_verifier",
-      {a_pixel_that_differs_much_counts_as_one_that_is_hidden, the_third_frame_of_a_scene_shows_what_moves,
+      {a_pixel_that_differs_much_counts_as_one_that_is_hidden,
+       the_third_frame_of_a_scene_shows_what_moves,
        the_first_look_finds_the_velocity_in_the_pictures_around_it,
        hits_of_one_person_become_their_weighted_mean_and_parts_of_it_are_dropped,
        a_patch_is_found_where_it_went_and_between_pixels,
        the_most_doubtful_box_is_looked_at_with_neighbours_that_fit,
        somebody_farther_away_is_shown_in_a_region_and_at_a_scale_of_its_own,
+       who_was_too_small_in_a_look_comes_first_in_the_next,
+       whom_the_frames_edge_cuts_is_shown_once_a_look,
        a_detection_makes_its_track_a_person_with_the_tracks_identity,
        two_people_in_one_track_are_followed_with_identities_of_their_own,
        a_track_that_persons_cover_in_part_is_a_group,
@@ -520,7 +553,8 @@ int main() {
        a_person_whom_looks_do_not_confirm_is_none_any_more,
        a_person_without_a_track_whom_a_look_misses_is_left_out_and_comes_back_with_its_identity,
        a_region_without_identity_keeps_that_of_the_one_before_which_it_overlaps_most,
-       following_and_choosing_allocate_nothing, the_worker_returns_what_its_detector_found_or_threw,
+       following_and_choosing_allocate_nothing,
+       the_worker_returns_what_its_detector_found_or_threw,
        the_input_size_of_an_onnx_model_is_read_from_its_file,
        persons_are_read_from_the_outputs_of_yolo_and_ssd,
        a_person_whom_no_track_shows_is_found_where_the_picture_changes});

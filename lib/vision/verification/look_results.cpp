@@ -56,10 +56,12 @@ bool PersonVerifier::is_part(const Box& box) const {
          });
 }
 
-// Legs, or a torso, of a person but for this one whom looks have shown repeatedly. It shows nobody behind.
+// Legs, or a torso, of another person whom looks have shown repeatedly, the last one too: it does not confirm person i, who may
+// stand behind. The line of the heights says nothing here: before a camera at the height of heads a torso fits it.
 bool PersonVerifier::is_part_of_another(const Box& box, std::size_t i, std::uint64_t frame) const {
   for (std::size_t k = 0; k < hit_.size(); ++k)
-    if (k != i && people_[k].looks() > 1 && is_part_of(box, people_[k].box_at(frame), p_.part_another, p_))
+    if (k != i && people_[k].looks() > 1 && !people_[k].missed &&
+        is_part_of(box, people_[k].box_at(frame), p_.part_another, p_))
       return true;
   return false;
 }
@@ -188,7 +190,7 @@ void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> hi
   miss(look, known);
   bind();
   for (const Candidate& each : candidates_) {
-    if (!shows(look.regions, each.box, each.box.height, p_)) continue;
+    if (!shows(look.regions, pictures_.seen(each.box), height_in(each), p_)) continue;
     bool explained = false;
     for (const Person& person : people_)
       explained = explained || person.track == each.id || share_within(person.box(), each.box) >= p_.inside;

@@ -9,7 +9,7 @@ namespace cerberus::vision {
 
 namespace {
 
-// Of a region's area, whose sides are whole pixels.
+// Factor by which whole pixels may make a region larger.
 constexpr double kRounded = 1.01;
 
 Box around(const Box& a, const Box& b) {
@@ -38,7 +38,8 @@ bool shows(const LookRegion& region, const Box& box, double height, const Verifi
   return share_within(box, box_of(region)) > p.in_look && height * region.scale >= p.fine * p.look_height;
 }
 
-// area: scaled pixels that the region may have. nullopt also where that is less than a look's, and too little.
+// area: scaled pixels that the region may have. nullopt: nobody to look for, or less than a whole
+// look's area is left and the target does not fit.
 std::optional<LookRegion> choose_region(std::span<const LookTarget> targets, Size frame, double area,
                                         const VerificationParameters& p) {
   const LookTarget* first = nullptr;
@@ -89,7 +90,7 @@ LookRegions choose_look(std::span<LookTarget> targets, Size frame, std::size_t m
   double left = p.most_area;
   while (look.count < std::min(most, LookRegions::kMost)) {
     const auto region = choose_region(targets, frame, left, p);
-    if (!region || area_of(*region) > left * kRounded) break;
+    if (!region || (look.count > 0 && area_of(*region) > left * kRounded)) break;
     look.all[look.count++] = *region, left -= area_of(*region);
     for (LookTarget& target : targets)
       if (shows(*region, target.box, target.height, p)) target.doubt = 0;

@@ -26,7 +26,7 @@ struct LookRegion {
 // What one look shows to the detector: regions of the frame, each at a scale of its own, since a window of the detector that
 // fits somebody near does not see somebody far away, and one that does takes a torso near the camera for a person.
 struct LookRegions {
-  static constexpr std::size_t kMost = 2;  // more change nothing. swept: docs/quality.md
+  static constexpr std::size_t kMost = 2;  // a third changes little. swept: docs/quality.md
   std::array<LookRegion, kMost> all;
   std::size_t count = 0;
   std::span<const LookRegion> chosen() const { return {all.data(), count}; }
@@ -39,7 +39,8 @@ struct LookRegions {
 LookRegions choose_look(std::span<LookTarget> targets, Size frame, std::size_t most,
                         const VerificationParameters& p);
 
-// A region holds the box, and enlarges it so much that the detector can see somebody as high as `height`, frame pixels.
+// Whether one of the regions holds the box, and enlarges it so much that the detector can see somebody as high as `height`,
+// frame pixels.
 bool shows(const LookRegions& look, const Box& box, double height, const VerificationParameters& p);
 
 }  // namespace cerberus::vision

@@ -199,6 +199,11 @@ bool PersonVerifier::is_explained(const Candidate& candidate, bool& group) const
   return all;
 }
 
+// Of the people in it, frame pixels.
+double PersonVerifier::height_in(const Candidate& candidate) const {
+  return (candidate.kind == RegionKind::person_like ? 1 : p_.in_group) * candidate.box.height;
+}
+
 std::optional<PersonVerifier::Look> PersonVerifier::choose() {
   targets_.clear();
   for (const Candidate& each : candidates_) {
@@ -206,11 +211,11 @@ std::optional<PersonVerifier::Look> PersonVerifier::choose() {
     if (bound) continue;
     const TrackRecord& own = record(each.id);
     const double waited = std::min(own.since_look, p_.most_waited);
-    const bool one = each.kind == RegionKind::person_like;
-    targets_.push_back({each.box, waited / (1 + own.refuted), (one ? 1 : p_.in_group) * each.box.height});
+    targets_.push_back({pictures_.seen(each.box), waited / (1 + own.refuted), height_in(each)});
   }
   for (const Person& each : people_)
-    targets_.push_back({each.box(), each.since_look * (each.candidate < 0 ? 1 : 0.6), each.box().height});
+    targets_.push_back(
+        {pictures_.seen(each.box()), each.since_look * (each.candidate < 0 ? 1 : 0.6), each.box().height});
   hidden_.clear();
   for (const Candidate& each : candidates_) hidden_.push_back(pictures_.reduced(each.box));
   for (const Person& each : people_) hidden_.push_back(pictures_.reduced(each.box()));
@@ -225,11 +230,11 @@ std::optional<PersonVerifier::Look> PersonVerifier::choose() {
   for (const LookRegion& region : regions.chosen()) {
     const Box seen{double(region.x), double(region.y), double(region.width), double(region.height)};
     changes_.looked(pictures_.reduced(seen));
-    for (const Candidate& each : candidates_)
-      if (share_within(each.box, seen) > p_.in_look) record(each.id).since_look = 0;
-    for (Person& each : people_)
-      if (share_within(pictures_.seen(each.box()), seen) > p_.in_look) each.since_look = 0;
   }
+  for (const Candidate& each : candidates_)
+    if (shows(regions, pictures_.seen(each.box), height_in(each), p_)) record(each.id).since_look = 0;
+  for (Person& each : people_)
+    if (shows(regions, pictures_.seen(each.box()), each.box().height, p_)) each.since_look = 0;
   return Look{regions, pictures_.number()};
 }
 

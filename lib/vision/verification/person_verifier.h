@@ -63,8 +63,8 @@ class PersonVerifier {
   void set_margins(double above_head, double below_feet) {
     above_head_ = above_head, below_feet_ = below_feet;
   }
-  // Regions of a look, LookRegions::kMost at most and until it is set: 1 where each costs the same, whatever its size.
-  void set_most_regions(std::size_t most) { most_regions_ = most; }
+  // The detector fits each region to its own input, as networks do: one region a look, in which nobody is too small.
+  void set_fits_regions() { most_regions_ = 1, p_.fine = 0; }
   // The score down to which hits are of use: see VerificationParameters::weak.
   double least_score(double threshold) const { return p_.weak * threshold; }
   // The next frame. picture: its luma, reduced (any size, the same in every frame of a stream); motion: frame k-1 to k
@@ -127,6 +127,7 @@ class PersonVerifier {
   std::uint32_t lost_identity(Person& person);
   bool is_owned(std::uint32_t id) const;
   void take_persons(std::span<const PersonDetection> hits, double threshold);
+  double height_in(const Candidate& candidate) const;
   bool is_part(const Box& box) const;
   bool is_part_of_another(const Box& box, std::size_t i, std::uint64_t frame) const;
   bool is_shown_by_look(std::size_t i) const;

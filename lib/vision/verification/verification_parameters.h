@@ -46,7 +46,7 @@ struct VerificationParameters {
       0.45;  // share of a smaller detection in a person, or in a person-like track: it is a part of it,
   double part_height = 0.75;  // if it is lower than this share of its height
   // The same share of a detection that is as high as people are there, and of one that would show a person who is known
-  // while it lies in another. swept: docs/quality.md, .45 to .8 and .6 to 1.
+  // while it lies in another. swept: docs/quality.md, .45 to .8 and .6 to .9.
   double part_fits = 0.65, part_another = 0.9;
   double absorbed = 0.6;  // the same share for a person who is known and whom a look does not show
   // Share of a person that a nearer one hides: then a look that does not show the person says nothing, up to
@@ -100,7 +100,7 @@ struct VerificationParameters {
   double stands = 0.5;           // pixels that a corner moves a frame, at most, where the camera stands
   double changed = 0.3;          // of a detection, where no track is: else it is background
 
-  // Where to look. A look's region is scaled so that a person in the most doubtful box is `look_height` pixels high.
+  // Where to look. A look's region is scaled so that the lowest person who is looked for in it is `look_height` pixels high.
   double in_look = 0.8;  // share of a box that lies in a look's region: less, and the look says nothing of it
   double look_height = 85;  // Derived: 83 is the least that the Daimler detector sees
   double fine = 0.95;       // share of it, from which on a person is seen. swept: docs/quality.md, .7 to .95
@@ -110,7 +110,7 @@ struct VerificationParameters {
       0.35;  // of the box's height, left and right: the detector's window is wider than a person
   double top_margin = 0.14;  // of the box's height, above and below
   // Pixels of a scaled look, all its regions together. Guard: a quarter of a core on PETS09-S2L1. swept: docs/quality.md,
-  // 240e3 to 300e3.
+  // 255e3 to 300e3.
   double most_area = 270e3;
   double least_height = 24;  // frame pixels: lower boxes are not looked at
   double most_scale = 4;     // by which a look is enlarged
