@@ -196,7 +196,7 @@ gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
                                              : kDaimlerThreshold;
     state.verifier.set_margins(model ? 0 : cerberus::plugin::kAboveHead,
                                model ? 0 : cerberus::plugin::kBelowFeet);
-    if (model) state.verifier.set_fits_regions();
+    state.verifier.set_fits_regions(model);
     state.certain = std::max(model ? kModelCertain : kDaimlerCertain, state.threshold);
     const double least = state.verifier.least_score(state.threshold);
     std::string wrong;

@@ -408,7 +408,8 @@ START_TEST(a_look_in_which_a_person_is_too_small_to_be_seen_misses_nobody) {
   for (const double scale : {0.4, 0.6})
     for (const bool fits : {false, true}) {
       Rig rig;
-      if (fits) rig.verifier.set_fits_regions();
+      rig.verifier.set_fits_regions(true);
+      rig.verifier.set_fits_regions(fits);
       rig.look({{person_at(200), 3}});
       rig.frames(1);
       auto look = *rig.verifier.choose();

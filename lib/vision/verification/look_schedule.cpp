@@ -9,9 +9,6 @@ namespace cerberus::vision {
 
 namespace {
 
-// Factor by which whole pixels may make a region larger.
-constexpr double kRounded = 1.01;
-
 Box around(const Box& a, const Box& b) {
   const double x = std::min(a.x, b.x), y = std::min(a.y, b.y);
   return {x, y, std::max(a.right(), b.right()) - x, std::max(a.bottom(), b.bottom()) - y};
@@ -25,21 +22,17 @@ Box padded(const Box& box, Size frame, const VerificationParameters& p) {
           std::clamp(box.bottom() + above, y + 1, double(frame.height)) - y};
 }
 
-Box box_of(const LookRegion& region) {
-  return {double(region.x), double(region.y), double(region.width), double(region.height)};
-}
-
 // Scaled pixels.
 double area_of(const LookRegion& region) {
-  return region.width * region.scale * region.height * region.scale;
+  return region.box().area() * region.scale * region.scale;
 }
 
 bool shows(const LookRegion& region, const Box& box, double height, const VerificationParameters& p) {
-  return share_within(box, box_of(region)) > p.in_look && height * region.scale >= p.fine * p.look_height;
+  return share_within(box, region.box()) > p.in_look && height * region.scale >= p.fine * p.look_height;
 }
 
-// area: scaled pixels that the region may have. nullopt: nobody to look for, or less than a whole
-// look's area is left and the target does not fit.
+// area: scaled pixels that the region may have, before its sides become whole pixels. nullopt: nobody to look for, or less than
+// a whole look's area is left and the target does not fit.
 std::optional<LookRegion> choose_region(std::span<const LookTarget> targets, Size frame, double area,
                                         const VerificationParameters& p) {
   const LookTarget* first = nullptr;
@@ -90,7 +83,7 @@ LookRegions choose_look(std::span<LookTarget> targets, Size frame, std::size_t m
   double left = p.most_area;
   while (look.count < std::min(most, LookRegions::kMost)) {
     const auto region = choose_region(targets, frame, left, p);
-    if (!region || (look.count > 0 && area_of(*region) > left * kRounded)) break;
+    if (!region) break;
     look.all[look.count++] = *region, left -= area_of(*region);
     for (LookTarget& target : targets)
       if (shows(*region, target.box, target.height, p)) target.doubt = 0;

@@ -21,6 +21,7 @@ struct LookTarget {
 struct LookRegion {
   int x = 0, y = 0, width = 0, height = 0;  // frame pixels, within the frame
   double scale = 1;                         // by which the detector enlarges it
+  Box box() const { return {double(x), double(y), double(width), double(height)}; }
 };
 
 // What one look shows to the detector: regions of the frame, each at a scale of its own, since a window of the detector that

@@ -227,10 +227,7 @@ std::optional<PersonVerifier::Look> PersonVerifier::choose() {
          p_.in_group * place.box.height * down});
   const LookRegions regions = choose_look(targets_, pictures_.frame(), most_regions_, p_);
   if (regions.count == 0) return std::nullopt;
-  for (const LookRegion& region : regions.chosen()) {
-    const Box seen{double(region.x), double(region.y), double(region.width), double(region.height)};
-    changes_.looked(pictures_.reduced(seen));
-  }
+  for (const LookRegion& region : regions.chosen()) changes_.looked(pictures_.reduced(region.box()));
   for (const Candidate& each : candidates_)
     if (shows(regions, pictures_.seen(each.box), height_in(each), p_)) record(each.id).since_look = 0;
   for (Person& each : people_)

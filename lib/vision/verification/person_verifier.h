@@ -63,8 +63,11 @@ class PersonVerifier {
   void set_margins(double above_head, double below_feet) {
     above_head_ = above_head, below_feet_ = below_feet;
   }
-  // The detector fits each region to its own input, as networks do: one region a look, in which nobody is too small.
-  void set_fits_regions() { most_regions_ = 1, p_.fine = 0; }
+  // Whether the detector fits each region to its own input, as networks do: one region a look then, in which nobody is too
+  // small. false until it is set.
+  void set_fits_regions(bool fits) {
+    most_regions_ = fits ? 1 : LookRegions::kMost, p_.fine = fits ? 0 : VerificationParameters{}.fine;
+  }
   // The score down to which hits are of use: see VerificationParameters::weak.
   double least_score(double threshold) const { return p_.weak * threshold; }
   // The next frame. picture: its luma, reduced (any size, the same in every frame of a stream); motion: frame k-1 to k
