@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "vision/detection/zones.h"
+#include "vision/zones/zones.h"
 #include "vision/geometry/box.h"
 #include "vision/geometry/camera_orientation.h"
 

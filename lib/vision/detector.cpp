@@ -153,9 +153,11 @@ void Detector::find_regions(Analysis& record, const DetectorFrame& frame) {
     out.labels = labels_.take();
     out.labels->resize(size);
   }
+  Change change;
+  if (record.differences) change = {record.differences->current->view(), record.foreground->result.threshold};
   const std::span<const Region> found =
       regions_.update(out.mask->view(), out.labels ? out.labels->view() : View<std::uint16_t>{},
-                      frame.motion.in(size, frame.size));
+                      frame.motion.in(size, frame.size), change);
   out.regions.reserve(static_cast<std::size_t>(size.area() / 256) + 256);  // more than there are
   if (!record.foreground->result.ready) return;
   const double sx = static_cast<double>(frame.size.width) / size.width;

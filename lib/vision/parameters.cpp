@@ -37,17 +37,42 @@ class Numbers {
 // The same of a number that is 1 at least, as a divisor.
 #define D(member) Numbers::Number{#member, &p.member, 1}
 
+void name(Numbers n, BlobParting::Parameters& p) {
+  n.add({N(least_height), N(several), N(trunk), N(valley), N(changed)});
+}
+
 void name(Numbers n, RegionParameters& p) {
-  n.add({N(least_share),     N(least_height),  N(narrowest),
-         N(widest),          N(least_filled),  N(tallest),
-         N(usual_least),     N(usual_most),    N(usual_aspect),
-         N(alone),           N(step_x),        N(step_y),
-         N(shrinks),         N(grows),         N(least_looks),
-         N(walked),          N(across),        N(down),
-         N(joined),          N(least_unknown), N(walked_to_be_seen),
-         N(beside),          N(loose),         N(feet),
-         N(slack),           N(explained),     N(same_block),
-         N(young),           N(rim),           N(person_confidence),
+  n.add({N(least_share),
+         N(least_height),
+         N(narrowest),
+         N(widest),
+         N(least_filled),
+         N(tallest),
+         N(usual_least),
+         N(usual_most),
+         N(usual_aspect),
+         N(alone),
+         N(step_x),
+         N(step_y),
+         N(shrinks),
+         N(grows),
+         N(least_looks),
+         N(walked),
+         N(across),
+         N(down),
+         N(joined),
+         N(least_unknown),
+         N(walked_to_be_seen),
+         N(changed),
+         N(beside),
+         N(loose),
+         N(feet),
+         N(slack),
+         N(explained),
+         N(same_block),
+         N(young),
+         N(rim),
+         N(person_confidence),
          N(other_confidence)});
 }
 
@@ -241,6 +266,7 @@ std::string names_like(const std::vector<NamedNumber>& all, std::string_view nam
 std::vector<NamedNumber> named_numbers(DetectorParameters& p) {
   std::vector<NamedNumber> all;
   const auto stage = [&](const char* of, auto& numbers) { name({all, of}, numbers); };
+  stage("parting", p.detection.parting);
   stage("regions", p.detection.regions);
   stage("people", p.detection.people);
   stage("height", p.detection.height);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/detection/zones.h"
+#include "vision/zones/zones.h"
 
 #include <check.h>
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "vision/detection/polygons.h"
+#include "vision/zones/polygons.h"
 
 namespace cerberus::overlay {
 

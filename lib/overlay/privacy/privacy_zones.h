@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "overlay/privacy/block_mask.h"
-#include "vision/detection/world_polygon.h"
+#include "vision/zones/world_polygon.h"
 #include "vision/geometry/lens.h"
 
 namespace cerberus::overlay {

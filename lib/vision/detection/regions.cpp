@@ -45,8 +45,10 @@ struct RegionFinder::State {
   RegionOptions options;
   Size size;
   BitMask moving, closed;
+  Change change;  // of this frame
   Morphology morphology;
   Labeller labeller;
+  BlobParting parting{parameters.parting};
   HeightPrior prior{parameters.height};
   PeopleFinder people{parameters.people};
   TwoFrameConfirmation newcomers{parameters.confirmation};
@@ -69,11 +71,13 @@ struct RegionFinder::State {
         options.minimum_area > 0 ? options.minimum_area : parameters.regions.least_share * size.area());
   }
   void preallocate(Size picture);
+  void find_components();
   void learn(const Transform& motion);
   void group_components();
   void explain(int group);
   void explain_unknown(int group, const Bounds& window);
   double walked(const Box& body);
+  bool changes(const Box& body) const;
   void add_plain(std::size_t component, RegionKind kind = RegionKind::thing);
   RegionKind kind_of(const Component& unexplained) const;
   double unexplained(const Bounds& window, std::span<const Person> people) const;
@@ -84,6 +88,7 @@ struct RegionFinder::State {
 void RegionFinder::State::preallocate(Size picture) {
   for (BitMask* bits : {&moving, &closed}) bits->resize(bit_mask_size(picture));
   labeller.preallocate(picture);
+  parting.preallocate(picture.width);
   people.preallocate(picture);
   newcomers.preallocate();
   const std::size_t parts = labeller.limits().components;
@@ -97,6 +102,18 @@ void RegionFinder::State::preallocate(Size picture) {
   bodies.preallocate();
   vision::preallocate(regions, std::max(parts, std::min(2 * parts, kMostRegions)));
   size = picture;  // assigned last: after a failed allocation the next call tries again
+}
+
+// Those of the closed mask. Blobs are parted where the height of people is not known: where it is, PeopleFinder does it.
+// Clutter is left alone.
+void RegionFinder::State::find_components() {
+  const auto blobs = labeller.find(closed.view(), size.width, least());
+  if (!options.people || blobs.size() > kMostParts) return;
+  bool parted = false;
+  for (std::size_t i = 0; i < blobs.size(); ++i)
+    if (prior.height(blobs[i].bottom) <= 0)
+      parted |= parting.part(blobs[i], i, labeller.runs(), moving.view(), change, closed.view());
+  if (parted) labeller.find(closed.view(), size.width, least());
 }
 
 // Only walkers are samples of the height prior: blobs that look like one person, isolated, of the same height for three
@@ -242,15 +259,29 @@ double RegionFinder::State::walked(const Box& body) {
   return walk.farthest;
 }
 
-// A blob before the height of people is known. The bodies that explain it are persons where their heads are seen and they
-// walk: bodies explain cars, noise and the place that a person has left as well. Otherwise several bodies are a group, and
-// so is one that leaves much unexplained, if there are the gaps that people leave.
+// Returns whether enough of it differs from the frame before: the place that a person has left rests.
+bool RegionFinder::State::changes(const Box& body) const {
+  const int left = std::clamp(static_cast<int>(body.x), 0, size.width),
+            right = std::clamp(static_cast<int>(body.right()), 0, size.width);
+  long all = 0, changed = 0;
+  for (int y = std::max(0, static_cast<int>(body.y));
+       y < std::min(size.height, static_cast<int>(body.bottom())); ++y)
+    for_bits(moving.view().row(y), left, right, [&](int x) {
+      ++all;
+      changed += change.at(x, y);
+    });
+  return static_cast<double>(changed) >= parameters.regions.changed * static_cast<double>(all);
+}
+
+// A blob before the height of people is known. The bodies that explain it are persons where their heads are seen, they walk
+// and they change: bodies explain cars, noise and the place that a person has left as well. Otherwise several bodies are a
+// group, and so is one that leaves much unexplained, if there are the gaps that people leave.
 void RegionFinder::State::explain_unknown(int g, const Bounds& window) {
   const RegionParameters& p = parameters.regions;
   const auto found = people.find(moving.view(), window, prior);
   std::array<Person, PeopleFinder::kMostPeople> persons;
   const auto end = std::ranges::copy_if(found, persons.begin(), [&](const Person& person) {
-                     return walked(person.box) > p.walked_to_be_seen;
+                     return walked(person.box) > p.walked_to_be_seen && changes(person.box);
                    }).out;
   const std::span<const Person> walking(persons.begin(), end);
   const double rest = unexplained(window, found);
@@ -344,13 +375,13 @@ void RegionFinder::reset() {
 std::size_t RegionFinder::bytes() const {
   const State& s = *state_;
   return sizeof(State) + s.moving.bytes() + s.closed.bytes() + s.morphology.bytes() + s.labeller.bytes() +
-         s.people.bytes() + s.newcomers.bytes() + bytes_of(s.walkers) + bytes_of(s.walkers_before) +
-         bytes_of(s.blocks) + bytes_of(s.blocks_before) + bytes_of(s.group) + bytes_of(s.outlines) +
-         s.bodies.bytes() + s.outline_finder.bytes() + bytes_of(s.regions);
+         s.parting.bytes() + s.people.bytes() + s.newcomers.bytes() + bytes_of(s.walkers) +
+         bytes_of(s.walkers_before) + bytes_of(s.blocks) + bytes_of(s.blocks_before) + bytes_of(s.group) +
+         bytes_of(s.outlines) + s.bodies.bytes() + s.outline_finder.bytes() + bytes_of(s.regions);
 }
 
 std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uint16_t> labels,
-                                             const Transform& motion) {
+                                             const Transform& motion, const Change& change) {
   State& s = *state_;
   s.regions.clear();
   std::swap(s.blocks, s.blocks_before);
@@ -363,10 +394,12 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
   s.prior.advance(motion, s.size);
   s.bodies.advance(motion);
   pack(mask, s.moving.view());
+  s.change = change;
   std::memcpy(s.closed.view().data, s.moving.view().data, s.moving.bytes());
   const int side = static_cast<int>(std::lround(s.options.closing * mask.width / 320.0));
   s.morphology.close(s.closed.view(), mask.width, side);
-  const auto parts = s.labeller.find(s.closed.view(), mask.width, s.least());
+  s.find_components();
+  const auto parts = s.labeller.components();
   unpack(s.closed.view(), mask);
   if (!labels.empty()) s.labeller.write(labels);  // empty: not wanted
   s.outlines.clear();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/detection/zones.h"
+#include "vision/zones/zones.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "vision/detection/polygons.h"
+#include "vision/zones/polygons.h"
 
 namespace cerberus::vision {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/detection/polygons.h"
+#include "vision/zones/polygons.h"
 
 #include <algorithm>
 #include <charconv>

@@ -16,10 +16,10 @@
 #include <string_view>
 #include <vector>
 
-#include "vision/detection/world_polygon.h"
 #include "vision/geometry/camera_orientation.h"
 #include "vision/geometry/transform.h"
 #include "vision/image/image.h"
+#include "vision/zones/world_polygon.h"
 
 namespace cerberus::vision {
 

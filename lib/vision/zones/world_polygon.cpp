@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/detection/world_polygon.h"
+#include "vision/zones/world_polygon.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/detection/blob_parting.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "vision/image/preallocate.h"
+
+namespace cerberus::vision {
+namespace {
+
+// Counts in each column the foreground in the rows of the blob of which counts(x, y) is true.
+template <typename Counts>
+void project(const Component& blob, BitView moving, std::vector<int>& columns, Counts&& counts) {
+  columns.assign(static_cast<std::size_t>(blob.right), 0);
+  for (int y = blob.top; y < blob.bottom; ++y)
+    for_bits(moving.row(y), blob.left, blob.right, [&](int x) { columns[x] += counts(x, y); });
+}
+
+}  // namespace
+
+void BlobParting::preallocate(int width) {
+  for (std::vector<int>* columns : {&moving_, &changed_})
+    vision::preallocate(*columns, static_cast<std::size_t>(width));
+  vision::preallocate(valleys_, kMostValleys);
+}
+
+std::size_t BlobParting::bytes() const {
+  return bytes_of(moving_) + bytes_of(changed_) + bytes_of(valleys_);
+}
+
+// The first stretch of columns with the least foreground.
+BlobParting::Columns BlobParting::emptiest(Columns between) const {
+  const auto first = moving_.begin() + between.from, end = moving_.begin() + between.to;
+  const auto from = std::min_element(first, end);
+  const auto to = std::find_if(from, end, [&](int pixels) { return pixels != *from; });
+  return {static_cast<int>(from - moving_.begin()), static_cast<int>(to - moving_.begin())};
+}
+
+void BlobParting::find_valleys(const Component& blob) {
+  valleys_.clear();
+  int behind = blob.right;  // the column behind the last one through a trunk
+  for (int x = blob.left; x < blob.right && valleys_.size() < kMostValleys; ++x) {
+    if (moving_[x] < parameters_.trunk * blob.height()) continue;
+    if (x > behind) {
+      const Columns valley = emptiest({behind, x});
+      if (moving_[valley.from] <= parameters_.valley * blob.height()) valleys_.push_back(valley);
+    }
+    behind = x + 1;
+  }
+}
+
+bool BlobParting::changes(Columns columns) const {
+  const auto sum = [&](const std::vector<int>& of) {
+    return std::accumulate(of.begin() + columns.from, of.begin() + columns.to, 0);
+  };
+  return sum(changed_) >= parameters_.changed * sum(moving_);
+}
+
+// Removes the valleys beside what rests.
+void BlobParting::drop_resting(const Component& blob) {
+  int from = blob.left;
+  for (auto valley = valleys_.begin(); valley != valleys_.end();) {
+    const auto next = valley + 1;
+    const int to = next != valleys_.end() ? next->from : blob.right;
+    if (changes({from, valley->from}) && changes({valley->to, to})) {
+      from = valley->to;
+      valley = next;
+    } else {
+      valley = valleys_.erase(valley);
+    }
+  }
+}
+
+bool BlobParting::part(const Component& blob, std::size_t self, std::span<const Run> runs, BitView moving,
+                       const Change& change, MutableBitView closed) {
+  if (blob.height() < parameters_.least_height || blob.width() < parameters_.several * blob.height())
+    return false;
+  project(blob, moving, moving_, [](int, int) { return true; });
+  find_valleys(blob);
+  if (valleys_.empty()) return false;
+  project(blob, moving, changed_, [&](int x, int y) { return change.at(x, y); });
+  drop_resting(blob);
+  for (const Columns& valley : valleys_)
+    for (const Run& run : runs)
+      if (run.component == self && run.first < valley.to && run.end > valley.from)
+        clear_bits(closed.row(run.row), std::max<int>(run.first, valley.from),
+                   std::min<int>(run.end, valley.to));
+  return !valleys_.empty();
+}
+
+}  // namespace cerberus::vision
