@@ -11,16 +11,17 @@ namespace {
 
 // Counts in each column the foreground in the rows of the blob of which counts(x, y) is true.
 template <typename Counts>
-void project(const Component& blob, BitView moving, std::vector<int>& columns, Counts&& counts) {
+void project(const Component& blob, BitView moving, std::vector<std::uint16_t>& columns, Counts&& counts) {
   columns.assign(static_cast<std::size_t>(blob.right), 0);
   for (int y = blob.top; y < blob.bottom; ++y)
-    for_bits(moving.row(y), blob.left, blob.right, [&](int x) { columns[x] += counts(x, y); });
+    for_bits(moving.row(y), blob.left, blob.right,
+             [&](int x) { columns[x] = static_cast<std::uint16_t>(columns[x] + counts(x, y)); });
 }
 
 }  // namespace
 
 void BlobParting::preallocate(int width) {
-  for (std::vector<int>* columns : {&moving_, &changed_})
+  for (std::vector<std::uint16_t>* columns : {&moving_, &changed_})
     vision::preallocate(*columns, static_cast<std::size_t>(width));
   vision::preallocate(valleys_, kMostValleys);
 }
@@ -51,7 +52,7 @@ void BlobParting::find_valleys(const Component& blob) {
 }
 
 bool BlobParting::changes(Columns columns) const {
-  const auto sum = [&](const std::vector<int>& of) {
+  const auto sum = [&](const std::vector<std::uint16_t>& of) {
     return std::accumulate(of.begin() + columns.from, of.begin() + columns.to, 0);
   };
   return sum(changed_) >= parameters_.changed * sum(moving_);

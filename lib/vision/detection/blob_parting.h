@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -58,7 +59,7 @@ class BlobParting {
 
   Parameters parameters_;
   // Scratch. Pixels of the foreground, and of it those that changed, in each column of the picture, in the rows of a blob.
-  std::vector<int> moving_, changed_;
+  std::vector<std::uint16_t> moving_, changed_;
   std::vector<Columns> valleys_;  // of that blob: their emptiest columns
 };
 
