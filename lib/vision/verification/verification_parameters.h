@@ -114,7 +114,7 @@ struct VerificationParameters {
   double most_area = 270e3;
   double least_height = 24;  // frame pixels: lower boxes are not looked at
   double most_scale = 4;     // by which a look is enlarged
-  double flattest = 0.55,
+  double flattest = 0.5,
          steepest = 1.8;  // heights of a further box in the same look, in heights of the first
 };
 
