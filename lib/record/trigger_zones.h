@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "vision/zones/zones.h"
 #include "vision/geometry/box.h"
 #include "vision/geometry/camera_orientation.h"
+#include "vision/zones/zones.h"
 
 namespace cerberus::record {
 

@@ -10,11 +10,11 @@
 #include "vision/analysis.h"
 #include "vision/burnt_in/burnt_in.h"
 #include "vision/detection/limits.h"
-#include "vision/zones/zones.h"
 #include "vision/duplicate_frames.h"
 #include "vision/geometry/box_edge.h"
 #include "vision/geometry/lens.h"
 #include "vision/image/luma.h"
+#include "vision/zones/zones.h"
 
 namespace cerberus::vision {
 

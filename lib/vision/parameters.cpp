@@ -38,7 +38,7 @@ class Numbers {
 #define D(member) Numbers::Number{#member, &p.member, 1}
 
 void name(Numbers n, BlobParting::Parameters& p) {
-  n.add({N(least_height), N(several), N(trunk), N(valley), N(changed)});
+  n.add({N(least_height), N(trunk), N(valley), N(changed)});
 }
 
 void name(Numbers n, RegionParameters& p) {
@@ -63,6 +63,7 @@ void name(Numbers n, RegionParameters& p) {
          N(joined),
          N(least_unknown),
          N(walked_to_be_seen),
+         N(walked_if_changed),
          N(changed),
          N(beside),
          N(loose),

@@ -85,6 +85,7 @@ VISION = {
     'vision/background': ('vision/components',),
     'vision/burnt_in': ('vision/geometry',),
     'vision/detection': ('vision/geometry',),
+    'vision/zones': ('vision/geometry',),
     'vision/tracking': ('vision/detection',),
     'vision/verification': ('vision/tracking',),
 }

@@ -68,6 +68,7 @@ START_TEST(every_number_of_every_stage_has_a_name_of_its_own) {
   const auto all_are_named = [&]<class P>(const char* stage, const P& of) {
     ck_assert_msg(names_in(p, stage, of) == members<P>(), "%s has %zu members", stage, members<P>());
   };
+  all_are_named("parting", d.parting);
   all_are_named("regions", d.regions);
   const std::size_t parts = 1 + d.people.body.size();  // each a member of its own or of an array
   ck_assert_uint_eq(names_in(p, "people", d.people),

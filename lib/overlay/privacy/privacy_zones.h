@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "overlay/privacy/block_mask.h"
-#include "vision/zones/world_polygon.h"
 #include "vision/geometry/lens.h"
+#include "vision/zones/world_polygon.h"
 
 namespace cerberus::overlay {
 

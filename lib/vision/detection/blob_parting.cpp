@@ -9,13 +9,16 @@
 namespace cerberus::vision {
 namespace {
 
-// Counts in each column the foreground in the rows of the blob of which counts(x, y) is true.
+// Counts in each column the foreground pixels of the blob for which counts(x, y) is true.
 template <typename Counts>
-void project(const Component& blob, BitView moving, std::vector<std::uint16_t>& columns, Counts&& counts) {
+void project(const Component& blob, std::size_t self, std::span<const Run> runs, BitView moving,
+             std::vector<std::uint16_t>& columns, Counts&& counts) {
   columns.assign(static_cast<std::size_t>(blob.right), 0);
-  for (int y = blob.top; y < blob.bottom; ++y)
-    for_bits(moving.row(y), blob.left, blob.right,
-             [&](int x) { columns[x] = static_cast<std::uint16_t>(columns[x] + counts(x, y)); });
+  auto run = std::ranges::lower_bound(runs, blob.top, {}, &Run::row);
+  for (; run != runs.end() && run->row < blob.bottom; ++run)
+    if (run->component == self)
+      for_bits(moving.row(run->row), run->first, run->end,
+               [&](int x) { columns[x] = static_cast<std::uint16_t>(columns[x] + counts(x, run->row)); });
 }
 
 }  // namespace
@@ -58,30 +61,33 @@ bool BlobParting::changes(Columns columns) const {
   return sum(changed_) >= parameters_.changed * sum(moving_);
 }
 
-// Removes the valleys beside what rests.
-void BlobParting::drop_resting(const Component& blob) {
-  int from = blob.left;
-  for (auto valley = valleys_.begin(); valley != valleys_.end();) {
-    const auto next = valley + 1;
-    const int to = next != valleys_.end() ? next->from : blob.right;
-    if (changes({from, valley->from}) && changes({valley->to, to})) {
-      from = valley->to;
-      valley = next;
-    } else {
-      valley = valleys_.erase(valley);
+// Joins each part that rests to a neighbour: where there are two, across the fuller valley.
+void BlobParting::join_resting(const Component& blob) {
+  const auto rests = [&](std::size_t part) {
+    return !changes({part > 0 ? valleys_[part - 1].to : blob.left,
+                     part < valleys_.size() ? valleys_[part].from : blob.right});
+  };
+  const auto fullness = [&](std::size_t valley) { return moving_[valleys_[valley].from]; };
+  for (std::size_t part = 0; part <= valleys_.size() && !valleys_.empty();) {
+    if (!rests(part)) {
+      ++part;
+      continue;
     }
+    const bool leftwards = part == valleys_.size() || (part > 0 && fullness(part - 1) >= fullness(part));
+    const std::size_t gone = leftwards ? part - 1 : part;
+    valleys_.erase(valleys_.begin() + static_cast<std::ptrdiff_t>(gone));
+    part = gone;  // which is both now
   }
 }
 
 bool BlobParting::part(const Component& blob, std::size_t self, std::span<const Run> runs, BitView moving,
                        const Change& change, MutableBitView closed) {
-  if (blob.height() < parameters_.least_height || blob.width() < parameters_.several * blob.height())
-    return false;
-  project(blob, moving, moving_, [](int, int) { return true; });
+  if (blob.height() < parameters_.least_height) return false;
+  project(blob, self, runs, moving, moving_, [](int, int) { return true; });
   find_valleys(blob);
   if (valleys_.empty()) return false;
-  project(blob, moving, changed_, [&](int x, int y) { return change.at(x, y); });
-  drop_resting(blob);
+  project(blob, self, runs, moving, changed_, [&](int x, int y) { return change.at(x, y); });
+  join_resting(blob);
   for (const Columns& valley : valleys_)
     for (const Run& run : runs)
       if (run.component == self && run.first < valley.to && run.end > valley.from)

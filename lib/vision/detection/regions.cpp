@@ -104,8 +104,8 @@ void RegionFinder::State::preallocate(Size picture) {
   size = picture;  // assigned last: after a failed allocation the next call tries again
 }
 
-// Those of the closed mask. Blobs are parted where the height of people is not known: where it is, PeopleFinder does it.
-// Clutter is left alone.
+// Finds the components of the closed mask. Blobs are parted where the height of people is not known: where it is,
+// PeopleFinder does that. Clutter is left alone.
 void RegionFinder::State::find_components() {
   const auto blobs = labeller.find(closed.view(), size.width, least());
   if (!options.people || blobs.size() > kMostParts) return;
@@ -259,7 +259,7 @@ double RegionFinder::State::walked(const Box& body) {
   return walk.farthest;
 }
 
-// Returns whether enough of it differs from the frame before: the place that a person has left rests.
+// Returns whether enough of a body's foreground differs from the frame before: the place that a person has left rests.
 bool RegionFinder::State::changes(const Box& body) const {
   const int left = std::clamp(static_cast<int>(body.x), 0, size.width),
             right = std::clamp(static_cast<int>(body.right()), 0, size.width);
@@ -273,15 +273,16 @@ bool RegionFinder::State::changes(const Box& body) const {
   return static_cast<double>(changed) >= parameters.regions.changed * static_cast<double>(all);
 }
 
-// A blob before the height of people is known. The bodies that explain it are persons where their heads are seen, they walk
-// and they change: bodies explain cars, noise and the place that a person has left as well. Otherwise several bodies are a
-// group, and so is one that leaves much unexplained, if there are the gaps that people leave.
+// A blob before the height of people is known. The bodies that explain it are persons where their heads are seen and they
+// walk: bodies explain cars, noise and the place that a person has left as well. Otherwise several bodies are a group, and
+// so is one that leaves much unexplained, if there are the gaps that people leave.
 void RegionFinder::State::explain_unknown(int g, const Bounds& window) {
   const RegionParameters& p = parameters.regions;
   const auto found = people.find(moving.view(), window, prior);
   std::array<Person, PeopleFinder::kMostPeople> persons;
   const auto end = std::ranges::copy_if(found, persons.begin(), [&](const Person& person) {
-                     return walked(person.box) > p.walked_to_be_seen && changes(person.box);
+                     const double far = walked(person.box);
+                     return far > p.walked_to_be_seen || (far > p.walked_if_changed && changes(person.box));
                    }).out;
   const std::span<const Person> walking(persons.begin(), end);
   const double rest = unexplained(window, found);
@@ -394,7 +395,7 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
   s.prior.advance(motion, s.size);
   s.bodies.advance(motion);
   pack(mask, s.moving.view());
-  s.change = change;
+  s.change = change.difference.size() == mask.size() ? change : Change{};
   std::memcpy(s.closed.view().data, s.moving.view().data, s.moving.bytes());
   const int side = static_cast<int>(std::lround(s.options.closing * mask.width / 320.0));
   s.morphology.close(s.closed.view(), mask.width, side);
@@ -415,6 +416,7 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
   }
   for (Region& r : s.regions) r.area = static_cast<double>(s.moving_in(r.box));
   if (s.options.people) s.newcomers.filter(s.regions, s.seen, s.options.minimum_area, motion, s.size);
+  s.change = {};  // the picture is the caller's
   return s.regions;
 }
 

@@ -32,7 +32,7 @@ struct VerificationParameters {
   double bound = 0.5;  // a track is of the person,
   // and stays so down to this, below which it also replaces the box of the person whom it shows. swept: docs/quality.md,
   // .2 to .45.
-  double unbound = 0.25;
+  double unbound = 0.3;
   double unbound_whole =
       0.1;  // or this where the track is as high and wide as the person: that one was lost in the picture
   double agrees = 0.6;  // a look shows the person where the track is,
@@ -55,7 +55,7 @@ struct VerificationParameters {
   double on_track = 0.3;  // share of a detection that lies on tracks: else it is background
   // Share of the threshold. A detection below the threshold counts where it shows a person who is known, or one who is as
   // high as people are there. swept: docs/quality.md, .55 to 1.
-  double weak = 0.65;
+  double weak = 0.6;
   double sure_at =
       1.3;  // times the threshold: one look is enough where only the picture changed. swept: docs/quality.md
 
@@ -114,7 +114,7 @@ struct VerificationParameters {
   double most_area = 270e3;
   double least_height = 24;  // frame pixels: lower boxes are not looked at
   double most_scale = 4;     // by which a look is enlarged
-  double flattest = 0.5,
+  double flattest = 0.45,
          steepest = 1.8;  // heights of a further box in the same look, in heights of the first
 };
 
