@@ -234,13 +234,13 @@ START_TEST(who_was_too_small_in_a_look_comes_first_in_the_next) {
   Rig rig;
   const std::vector<Candidate> tracks{{.id = 1, .box = {100, 100, 80, 240}},
                                       {.id = 2, .box = {230, 100, 32, 100}},
-                                      {.id = 3, .box = {185, 110, 16, 45}}};
+                                      {.id = 3, .box = {185, 110, 14, 40}}};
   rig.frame({}, tracks);
   const auto first = rig.verifier.choose();
   ck_assert_uint_eq(first->regions.count, 2);
   rig.frame({}, tracks);
   ck_assert_double_eq_tol(rig.verifier.choose()->regions.all[0].scale,
-                          VerificationParameters{}.look_height / 45, 1e-9);
+                          VerificationParameters{}.look_height / 40, 1e-9);
 }
 END_TEST
 
