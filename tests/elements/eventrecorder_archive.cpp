@@ -338,8 +338,11 @@ struct StuckDisk {
     disk.changed.notify_all();
     return GST_BUS_PASS;
   }
-  // As a weak reference to the recorder.
-  static void note_gone(gpointer self, GObject*) {
+  // With data of the recorder, which is freed after all that it holds: a weak reference would be told before.
+  void watch(GstElement* recorder) {
+    g_object_set_data_full(G_OBJECT(recorder), "stuck-disk", this, note_gone);
+  }
+  static void note_gone(gpointer self) {
     auto& disk = *static_cast<StuckDisk*>(self);
     const std::lock_guard guard(disk.lock);
     disk.gone = true;
@@ -389,7 +392,7 @@ GST_START_TEST(a_stop_does_not_wait_for_a_disk_that_does_not_answer_and_reports_
   {
     Rig rig;
     gst_bus_set_sync_handler(rig.bus, StuckDisk::handle, &disk, nullptr);
-    g_object_weak_ref(G_OBJECT(rig.element), StuckDisk::note_gone, &disk);
+    disk.watch(rig.element);
     rig.start();
     g_object_set(rig.element, "stop-timeout", 50 * GST_MSECOND, nullptr);
     rig.play_to(20);
@@ -425,7 +428,7 @@ GST_START_TEST(the_picture_of_an_event_that_ended_counts_among_the_bytes_that_wa
     Rig rig;
     rig.analysis = std::make_unique<Stream>(rig.element, "analysis", kRaw);
     gst_bus_set_sync_handler(rig.bus, StuckDisk::handle, &disk, nullptr);
-    g_object_weak_ref(G_OBJECT(rig.element), StuckDisk::note_gone, &disk);
+    disk.watch(rig.element);
     g_object_set(rig.element, "stop-timeout", guint64{0}, "json-lines", FALSE, nullptr);
     rig.start();
     for (guint32 k = 0; k < 120; ++k) {  // the event ends at frame 60
@@ -473,7 +476,7 @@ GST_START_TEST(a_start_and_a_stop_return_though_the_disk_never_answers) {
   {
     Rig rig;
     g_object_set(rig.element, "stop-timeout", GST_CLOCK_TIME_NONE, nullptr);  // a start waits 5 s at most
-    g_object_weak_ref(G_OBJECT(rig.element), StuckDisk::note_gone, &disk);
+    disk.watch(rig.element);
     blocked_folder.block(rig.folder.path());
     rig.start();
     rig.play_to(20);
