@@ -14,11 +14,10 @@ template <typename Counts>
 void project(const Component& blob, std::size_t self, std::span<const Run> runs, BitView moving,
              std::vector<std::uint16_t>& columns, Counts&& counts) {
   columns.assign(static_cast<std::size_t>(blob.right), 0);
-  auto run = std::ranges::lower_bound(runs, blob.top, {}, &Run::row);
-  for (; run != runs.end() && run->row < blob.bottom; ++run)
-    if (run->component == self)
-      for_bits(moving.row(run->row), run->first, run->end,
-               [&](int x) { columns[x] = static_cast<std::uint16_t>(columns[x] + counts(x, run->row)); });
+  for_runs(blob, self, runs, [&](const Run& run) {
+    for_bits(moving.row(run.row), run.first, run.end,
+             [&](int x) { columns[x] = static_cast<std::uint16_t>(columns[x] + counts(x, run.row)); });
+  });
 }
 
 }  // namespace
@@ -88,11 +87,12 @@ bool BlobParting::part(const Component& blob, std::size_t self, std::span<const 
   if (valleys_.empty()) return false;
   project(blob, self, runs, moving, changed_, [&](int x, int y) { return change.at(x, y); });
   join_resting(blob);
-  for (const Columns& valley : valleys_)
-    for (const Run& run : runs)
-      if (run.component == self && run.first < valley.to && run.end > valley.from)
+  for_runs(blob, self, runs, [&](const Run& run) {
+    for (const Columns& valley : valleys_)
+      if (run.first < valley.to && run.end > valley.from)
         clear_bits(closed.row(run.row), std::max<int>(run.first, valley.from),
                    std::min<int>(run.end, valley.to));
+  });
   return !valleys_.empty();
 }
 

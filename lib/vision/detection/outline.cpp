@@ -20,12 +20,10 @@ Bounds OutlineFinder::find_body(const Component& c, std::size_t self, std::span<
   // Each run adds one to its columns: steps up and down first, summed up afterwards.
   const int width = c.width();
   columns_.assign(static_cast<std::size_t>(width) + 1, 0);
-  auto run = std::ranges::lower_bound(runs, c.top, {}, &Run::row);
-  for (; run != runs.end() && run->row < c.bottom; ++run) {
-    if (run->component != self) continue;
-    ++columns_[run->first - c.left];
-    --columns_[run->end - c.left];
-  }
+  for_runs(c, self, runs, [&](const Run& run) {
+    ++columns_[run.first - c.left];
+    --columns_[run.end - c.left];
+  });
   int highest = columns_[0];
   for (int x = 1; x < width; ++x) highest = std::max(highest, columns_[x] += columns_[x - 1]);
   int left = 0, right = width;

@@ -46,9 +46,9 @@ struct RegionParameters {
   // Heights of a body that it has walked before it is published. measured: with .08 the place of a person who leaves is
   // a region for a frame (unit places).
   double walked_to_be_seen = 0.1;
-  // The same of a body that changes: which differs, in this share of its foreground, from the frame before. The place that a
-  // person has left rests. swept: docs/quality.md, 0 to .1 and 0 to .4. Guard: unit (places, steady), where that place is a
-  // region for a frame with a share of 0.
+  // Heights of a body that changes, which it has walked before it is published: `changed` is the share of its foreground, at
+  // least, that differs from the frame before. The place that a person has left rests. swept: docs/quality.md, 0 to .1 and 0
+  // to .4. Guard: unit (places, steady), where that place is a region for a frame with a share of 0.
   double walked_if_changed = 0.04;
   double changed = 0.3;
   // Share of a blob's foreground that its only body leaves unexplained and from which on the blob is a group. measured:

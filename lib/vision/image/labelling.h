@@ -8,6 +8,8 @@
 // 2008.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -43,6 +45,14 @@ struct Run {
   std::uint16_t first = 0, end = 0;  // columns, end is one past the last
   std::uint16_t component = 0;       // index into components()
 };
+
+// Calls each(run) for the runs of component number `self`. runs: those of all components, in reading order.
+template <typename Each>
+void for_runs(const Component& component, std::size_t self, std::span<const Run> runs, Each&& each) {
+  auto run = std::ranges::lower_bound(runs, component.top, {}, &Run::row);
+  for (; run != runs.end() && run->row < component.bottom; ++run)
+    if (run->component == self) each(*run);
+}
 
 class Labeller {
  public:
