@@ -82,10 +82,10 @@ void name(Numbers n, PeopleFinder::Part& p) {
 }
 
 void name(Numbers n, PeopleFinder::Parameters& p) {
-  n.add({N(elsewhere),    N(price),      N(height_weight), N(spread),    N(unknown_spread), N(unknown_step),
-         N(other_height), N(least_gain), N(aspect),        D(cells),     N(above),          N(below),
-         N(least_feet),   D(least_part), D(edge_part),     D(edge_step), N(one_wide),       N(solid),
-         N(block_width),  N(gaps),       N(gaps_after)});
+  n.add({N(elsewhere),    N(price),      N(height_weight), N(spread),      N(unknown_spread), N(unknown_step),
+         N(other_height), N(least_gain), N(aspect),        D(cells),       N(above),          N(below),
+         N(least_feet),   D(least_part), D(edge_part),     D(edge_step),   N(one_wide),       N(solid),
+         N(block_width),  N(gaps),       N(gaps_after),    N(gaps_unknown)});
   name(n.part("free_space"), p.free_space);
   name(n.part("head"), p.body[0]);
   name(n.part("trunk"), p.body[1]);
@@ -94,7 +94,7 @@ void name(Numbers n, PeopleFinder::Parameters& p) {
 
 void name(Numbers n, HeightPrior::Parameters& p) {
   n.add({N(spread), N(agree), N(share), N(least), N(uncertain), N(repeats), N(guesses), D(through_horizon),
-         N(baseline), N(steepest), D(refit), N(least_height), N(zoom)});
+         N(slope), N(baseline), N(steepest), D(refit), N(least_height), N(zoom)});
 }
 
 void name(Numbers n, OutlineFinder::Parameters& p) {

@@ -205,7 +205,7 @@ struct AskedOfTracks {
   bool promised;
 };
 constexpr AskedOfTracks kTracks[] = {{"PETS09-S2L1", 0.7, 0.72, 0, 0, 28, true},
-                                     {"TUD-Campus", 0.35, 0, 0.8, 0.45, 1000, false},
+                                     {"TUD-Campus", 0.35, 0, 0.8, 0.45, 1000, true},
                                      {"TUD-Stadtmitte", 0.05, 0, 0.5, 0.25, 1000, true},
                                      {"davis_tennis", 0, 0, 0.8, 0.8, 1000, true}};
 

@@ -75,15 +75,15 @@ START_TEST(a_prior_learnt_in_one_row_is_unknown_in_rows_far_away) {
 END_TEST
 
 // Of n alike samples in one row the mean has an error of .1 x sqrt(2 / n), and the slope is known from the horizon alone,
-// which is as uncertain as it is far away: 20 rows further on, 20 / 150 of a height.
+// which is as uncertain as twice its distance: 10 rows further on, 2 x 10 / 150 of a height.
 START_TEST(the_line_is_as_uncertain_as_its_samples_are_few_and_far_away) {
   HeightPrior prior;
   for (int i = 0; i < 16; ++i) prior.learn(150, 75);
   const double error = 0.1 * std::sqrt(2 / 16.0);
   ck_assert_double_eq_tol(prior.uncertainty(150), error, 1e-6);
-  const double there = prior.height(170);
-  ck_assert_double_eq_tol(there, 85, 1e-6);
-  ck_assert_double_eq_tol(prior.uncertainty(170) * there, std::hypot(error * 75, 20.0 / 150 * 75), 1e-5);
+  const double there = prior.height(160);
+  ck_assert_double_eq_tol(there, 80, 1e-6);
+  ck_assert_double_eq_tol(prior.uncertainty(160) * there, std::hypot(error * 75, 2 * 10.0 / 150 * 75), 1e-5);
 }
 END_TEST
 

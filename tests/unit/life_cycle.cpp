@@ -82,8 +82,8 @@ START_TEST(a_track_is_confirmed_that_was_seen_often_for_long_enough_and_has_move
     double age, travel;
     bool newly_visible, confirmed;
   } cases[] = {
-      {3, 5, 0.2, 0.12, false, true},    // 3 = .6 x 5
-      {3, 6, 0.2, 0.12, false, false},   // 3 < .6 x 6
+      {3, 6, 0.2, 0.12, false, true},    // 3 = .5 x 6
+      {3, 7, 0.2, 0.12, false, false},   // 3 < .5 x 7
       {2, 3, 0.2, 0.12, false, false},   // too few,
       {2, 3, 0.59, 0.12, false, false},  //
       {2, 3, 0.61, 0.12, false, true},   // but for a low frame rate: 3 x .2 s
@@ -110,13 +110,13 @@ START_TEST(a_track_is_confirmed_that_was_seen_often_for_long_enough_and_has_move
 }
 END_TEST
 
-START_TEST(a_tentative_track_is_lost_that_mostly_had_no_region_and_has_none_for_half_of_confirm_time) {
+START_TEST(a_tentative_track_is_lost_that_mostly_had_no_region_and_has_none_for_confirm_time) {
   const auto unseen = [](int hits, double before) {
     return after(track(Tentative{hits, 4}), [&](TrackHypothesis& t) { t.unseen = before; });
   };
-  ck_assert(unseen(2, 0.07) == TrackPhase::lost);       // .11 s, 2 < .6 x 4
-  ck_assert(unseen(2, 0.05) == TrackPhase::tentative);  // .09 s
-  ck_assert(unseen(3, 0.07) == TrackPhase::tentative);
+  ck_assert(unseen(1, 0.17) == TrackPhase::lost);       // .21 s, 1 < .5 x 4
+  ck_assert(unseen(1, 0.15) == TrackPhase::tentative);  // .19 s
+  ck_assert(unseen(2, 0.17) == TrackPhase::tentative);
 }
 END_TEST
 
@@ -412,7 +412,7 @@ int main() {
   return cerberus::tests::run_suite(
       "life_cycle",
       {a_track_is_confirmed_that_was_seen_often_for_long_enough_and_has_moved,
-       a_tentative_track_is_lost_that_mostly_had_no_region_and_has_none_for_half_of_confirm_time,
+       a_tentative_track_is_lost_that_mostly_had_no_region_and_has_none_for_confirm_time,
        a_track_without_region_is_coasted_and_lost_after_its_time,
        a_track_stops_that_came_and_stood_before_it_had_no_region, a_track_behind_another_one_does_not_stop,
        a_track_does_not_stop_at_the_edge_where_its_place_looks_otherwise,

@@ -135,19 +135,20 @@ START_TEST(two_persons_side_by_side_that_touch_are_two) {
 }
 END_TEST
 
-// The line is known from one row. Further down it expects more than the person has, and is uncertain by as much.
+// The line is known from one row. Further down it expects more than the person has, and is uncertain by as much. What the
+// height costs does not count in the least gain: with it nobody is found.
 START_TEST(where_the_line_is_uncertain_a_height_may_differ_by_more) {
   for (const bool sure : {false, true}) {
     Scene scene;
     scene.prior.reset();
     for (int i = 0; i < 64; ++i) scene.prior.learn(sure ? 100 + 2 * (i % 50) : 150, sure ? 50 + i % 50 : 75);
     PeopleFinder finder;
-    ck_assert_double_eq_tol(scene.prior.height(175), 87.5, 1);
-    ck_assert((scene.prior.uncertainty(175) < 0.1) == sure);
-    scene.draw(150, 175, 66);
+    ck_assert_double_eq_tol(scene.prior.height(162), 81, 1);
+    ck_assert((scene.prior.uncertainty(162) < 0.1) == sure);
+    scene.draw(150, 162, 61);
     const auto found = scene.find(finder);
     ck_assert_uint_eq(found.size(), sure ? 0 : 1);
-    if (!sure) ck_assert_double_lt(found[0].box.height, 73);  // .84 of what is expected
+    if (!sure) ck_assert_double_lt(found[0].box.height, 70);  // .86 of what is expected
   }
 }
 END_TEST

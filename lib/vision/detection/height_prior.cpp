@@ -79,7 +79,7 @@ void HeightPrior::fit() {
   const double variance = q.spread * mean_height_ * q.spread * mean_height_ * q.repeats;
   const double spread = syy - n * mean_foot_ * mean_foot_, joint = syh - n * mean_foot_ * mean_height_;
   const double usual = mean_height_ / std::max(mean_foot_, 1.0);
-  const double precision = spread / variance, prior = 1 / (usual * usual);
+  const double precision = spread / variance, prior = 1 / (q.slope * usual * q.slope * usual);
   slope_ = std::clamp((joint / variance + usual * prior) / (precision + prior), 0.0, q.steepest);
   slope_variance_ = 1 / (precision + prior);
   mean_variance_ = variance / n;

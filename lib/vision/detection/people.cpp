@@ -209,7 +209,7 @@ void PeopleFinder::try_row(int foot, const Scale& scale, int from, int to, int a
   const double deviation = scale.log / usual.spread;
   const int cost = static_cast<int>(kUnit * q.height_weight * deviation * deviation / 2 * h * h);
   const int least =
-      std::max(best.score, static_cast<int>(kUnit * (height_known_ ? q.least_gain : 0) * h * h));
+      std::max(best.score, height_known_ ? static_cast<int>(kUnit * q.least_gain * h * h) - cost : 0);
   // All that moves in these rows, within reach of these axes, may be too little.
   const int dearest = bands_[2].core_moving;
   const auto before = [&](int x) { return sums(foot)[x] - sums(foot - h)[x]; };
@@ -362,7 +362,7 @@ double PeopleFinder::gaps() {
 // Is the group a car or a door, not people?
 bool PeopleFinder::is_block(bool was_wide) {
   const std::size_t n = chosen_.size();
-  if (!height_known_) return n > 0 && (gaps() < parameters_.gaps || filled() > parameters_.solid);
+  if (!height_known_) return n > 0 && (gaps() < parameters_.gaps_unknown || filled() > parameters_.solid);
   const bool wide = n > 2 && window_.width() >= parameters_.block_width * shapes_[window_.bottom].width;
   wide_block_ = (wide && gaps() < parameters_.gaps) || (was_wide && n > 1 && gaps() < parameters_.gaps_after);
   return wide_block_ || (n > 2 && filled() > parameters_.solid);

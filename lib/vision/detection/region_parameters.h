@@ -63,7 +63,7 @@ struct RegionParameters {
   // own box counts, as feet that far down are beyond what fit_box searches (PersonBoxParameters::foot_fall). swept:
   // docs/quality.md, .05 to .13.
   double feet = 0.1;
-  double slack = 0.06;     // heights around a person's box that it explains as well
+  double slack = 0.08;     // heights around a person's box that it explains as well
   double explained = 0.4;  // of a component's box that persons cover: it is theirs
 
   double same_block = 0.5;  // intersection over union of two blocks, a frame apart, that are the same

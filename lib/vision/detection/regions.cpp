@@ -61,8 +61,9 @@ struct RegionFinder::State {
   std::vector<Box> blocks, blocks_before;  // groups too wide and too solid for people, now and a frame ago
   std::vector<int> group;                  // of each component
   OutlineFinder outline_finder{parameters.outline};
-  std::vector<Outline> outlines;            // of each component
-  WalkingBodies bodies{parameters.bodies};  // with a free head
+  std::vector<Outline> outlines;                // of each component
+  WalkingBodies bodies{parameters.bodies};      // all of them: a neighbour may hide a head for some frames
+  WalkingBodies free_heads{parameters.bodies};  // those with a free head, frame after frame
   std::vector<Region> regions;
   int seen = 0;  // frames of this scene
 
@@ -76,7 +77,9 @@ struct RegionFinder::State {
   void group_components();
   void explain(int group);
   void explain_unknown(int group, const Bounds& window);
-  double walked(const Box& body);
+  struct Walked;
+  Walked walked(const Box& body);
+  bool walks(const Box& body);
   bool changes(const Box& body) const;
   void add_plain(std::size_t component, RegionKind kind = RegionKind::thing);
   RegionKind kind_of(const Component& unexplained) const;
@@ -100,6 +103,7 @@ void RegionFinder::State::preallocate(Size picture) {
   outline_finder.preallocate(picture.width);
   vision::preallocate(outlines, parts);
   bodies.preallocate();
+  free_heads.preallocate();
   vision::preallocate(regions, std::max(parts, std::min(2 * parts, kMostRegions)));
   size = picture;  // assigned last: after a failed allocation the next call tries again
 }
@@ -249,14 +253,21 @@ void RegionFinder::State::add_people(int g, const Bounds& window, std::span<cons
   }
 }
 
-// Returns how far a body with a free head has been from its first place, in heights; 0 for any other. It teaches its
-// height by every stride, as a walker does: where people are never alone, and where the line of the heights is steeper
-// than expected. A body that no longer walks may be the place that a person has left.
-double RegionFinder::State::walked(const Box& body) {
-  if (!has_free_head(moving.view(), size, body, parameters.head)) return 0;
-  const WalkingBodies::Walk walk = bodies.add(body);
+// How far a body whose head is free has been from its first place, in heights of the body; 0: its head is hidden now.
+struct RegionFinder::State::Walked {
+  double head_free = 0;  // since the first of the last frames in a row with a free head
+  double at_all = 0;     // since it was found, its head hidden in some frames
+};
+
+// Records a body of this frame. Where its head is free frame after frame it teaches its height by every stride, as a walker
+// does: where people are never alone, and where the line of the heights is steeper than expected.
+RegionFinder::State::Walked RegionFinder::State::walked(const Box& body) {
+  const bool free_head = has_free_head(moving.view(), size, body, parameters.head);
+  const WalkingBodies::Walk any = bodies.add(body, free_head);
+  if (!free_head) return {};
+  const WalkingBodies::Walk walk = free_heads.add(body, true);
   if (walk.goes_on) prior.learn(body.bottom(), body.height, body.height);
-  return walk.farthest;
+  return {walk.farthest, any.farthest};
 }
 
 // Returns whether enough of a body's foreground differs from the frame before: the place that a person has left rests.
@@ -273,6 +284,15 @@ bool RegionFinder::State::changes(const Box& body) const {
   return static_cast<double>(changed) >= parameters.regions.changed * static_cast<double>(all);
 }
 
+// Records a body of this frame. Returns whether its head is free and it has walked. What hardly changes must have walked
+// farther, its head free all the way: it may be the place that a person has left.
+bool RegionFinder::State::walks(const Box& body) {
+  const RegionParameters& p = parameters.regions;
+  const Walked far = walked(body);
+  return far.head_free > p.walked_to_be_seen ||
+         (std::max(far.head_free, far.at_all) > p.walked_if_changed && changes(body));
+}
+
 // A blob before the height of people is known. The bodies that explain it are persons where their heads are seen and they
 // walk: bodies explain cars, noise and the place that a person has left as well. Otherwise several bodies are a group, and
 // so is one that leaves much unexplained, if there are the gaps that people leave.
@@ -281,8 +301,7 @@ void RegionFinder::State::explain_unknown(int g, const Bounds& window) {
   const auto found = people.find(moving.view(), window, prior);
   std::array<Person, PeopleFinder::kMostPeople> persons;
   const auto end = std::ranges::copy_if(found, persons.begin(), [&](const Person& person) {
-                     const double far = walked(person.box);
-                     return far > p.walked_to_be_seen || (far > p.walked_if_changed && changes(person.box));
+                     return walks(person.box);
                    }).out;
   const std::span<const Person> walking(persons.begin(), end);
   const double rest = unexplained(window, found);
@@ -366,6 +385,7 @@ void RegionFinder::reset() {
   state_->prior.reset();
   state_->walkers.clear();
   state_->bodies.reset();
+  state_->free_heads.reset();
   state_->blocks.clear();
   state_->blocks_before.clear();
   state_->regions.clear();
@@ -378,7 +398,8 @@ std::size_t RegionFinder::bytes() const {
   return sizeof(State) + s.moving.bytes() + s.closed.bytes() + s.morphology.bytes() + s.labeller.bytes() +
          s.parting.bytes() + s.people.bytes() + s.newcomers.bytes() + bytes_of(s.walkers) +
          bytes_of(s.walkers_before) + bytes_of(s.blocks) + bytes_of(s.blocks_before) + bytes_of(s.group) +
-         bytes_of(s.outlines) + s.bodies.bytes() + s.outline_finder.bytes() + bytes_of(s.regions);
+         bytes_of(s.outlines) + s.bodies.bytes() + s.free_heads.bytes() + s.outline_finder.bytes() +
+         bytes_of(s.regions);
 }
 
 std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uint16_t> labels,
@@ -394,6 +415,7 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
   ++s.seen;
   s.prior.advance(motion, s.size);
   s.bodies.advance(motion);
+  s.free_heads.advance(motion);
   pack(mask, s.moving.view());
   s.change = change.difference.size() == mask.size() ? change : Change{};
   std::memcpy(s.closed.view().data, s.moving.view().data, s.moving.bytes());

@@ -36,8 +36,8 @@ class LifeCycle {
     int slow_least_hits = 2;       // or these, at a low frame rate: after slow_confirm x confirm-time
     double slow_confirm = 3;       // times confirm-time
     double confirm_slack = 0.99;   // of confirm-time: rounding of the frame distances adds up
-    double hit_share = 0.6;        // of the frames in which a tentative track has a region
-    double tentative_coast = 0.5;  // of confirm-time that it is kept without
+    double hit_share = 0.5;        // of the frames in which a tentative track has a region
+    double tentative_coast = 0.6;  // of confirm-time that it is kept without
     // Coasting.
     double coast_share = 0.5;   // of the time for which the object was seen
     double border_coast = 0.3;  // of the coast time, at the picture's edge
