@@ -33,7 +33,7 @@ void HeightPrior::learn(double foot, double height, double weight) {
 
 // The line with most agreement among lines through two samples (M. A. Fischler, R. C. Bolles, "Random sample
 // consensus", 1981), then least squares over the samples that agree, with a weak prior on the slope: a horizon at the
-// picture's upper edge, give or take as much again.
+// picture's upper edge, give or take Parameters::slope times as much.
 void HeightPrior::fit() {
   const Parameters& q = parameters_;
   fresh_ = 0;

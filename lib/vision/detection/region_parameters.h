@@ -43,12 +43,13 @@ struct RegionParameters {
   // Blobs before the height of people is known.
   int least_unknown =
       40;  // pixels: bodies are looked for in a blob of this height. derived: a head has 5 pixels
-  // Heights of a body that it has walked before it is published. measured: with .08 the place of a person who leaves is
-  // a region for a frame (unit places).
+  // Heights of a body that it has walked, its head free all the way, before it is published. measured: with .08 the place of
+  // a person who leaves is a region for a frame (unit places).
   double walked_to_be_seen = 0.1;
-  // Heights of a body that changes, which it has walked before it is published: `changed` is the share of its foreground, at
-  // least, that differs from the frame before. The place that a person has left rests. swept: docs/quality.md, 0 to .1 and 0
-  // to .4. Guard: unit (places, steady), where that place is a region for a frame with a share of 0.
+  // Heights of a body that changes, which it has walked before it is published; its head may have been hidden in some frames.
+  // `changed` is the share of its foreground, at least, that differs from the frame before: the place that a person has left
+  // rests. swept: docs/quality.md, 0 to .1 and 0 to .4. Guard: unit (places, steady), where that place is a region for a frame
+  // with a share of 0.
   double walked_if_changed = 0.04;
   double changed = 0.3;
   // Share of a blob's foreground that its only body leaves unexplained and from which on the blob is a group. measured:
@@ -63,7 +64,8 @@ struct RegionParameters {
   // own box counts, as feet that far down are beyond what fit_box searches (PersonBoxParameters::foot_fall). swept:
   // docs/quality.md, .05 to .13.
   double feet = 0.1;
-  double slack = 0.08;     // heights around a person's box that it explains as well
+  // Heights around a person's box that it explains as well. swept: docs/quality.md, .06 to .12.
+  double slack = 0.08;
   double explained = 0.4;  // of a component's box that persons cover: it is theirs
 
   double same_block = 0.5;  // intersection over union of two blocks, a frame apart, that are the same

@@ -32,12 +32,13 @@ class LifeCycle {
     // S that an object has moved. The uncovered place of an object that belonged to the background model, and a lamp
     // that was switched on, never move.
     double least_travel = 0.12;
-    int least_hits = 3;            // frames with a region,
-    int slow_least_hits = 2;       // or these, at a low frame rate: after slow_confirm x confirm-time
-    double slow_confirm = 3;       // times confirm-time
-    double confirm_slack = 0.99;   // of confirm-time: rounding of the frame distances adds up
-    double hit_share = 0.5;        // of the frames in which a tentative track has a region
-    double tentative_coast = 0.6;  // of confirm-time that it is kept without
+    int least_hits = 3;           // frames with a region,
+    int slow_least_hits = 2;      // or these, at a low frame rate: after slow_confirm x confirm-time
+    double slow_confirm = 3;      // times confirm-time
+    double confirm_slack = 0.99;  // of confirm-time: rounding of the frame distances adds up
+    // Of the frames in which a tentative track has a region, and of confirm-time that it is kept with fewer. swept:
+    // docs/quality.md, .4 to .6 and .5 to 1.
+    double hit_share = 0.5, tentative_coast = 0.6;
     // Coasting.
     double coast_share = 0.5;   // of the time for which the object was seen
     double border_coast = 0.3;  // of the coast time, at the picture's edge
