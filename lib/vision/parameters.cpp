@@ -94,7 +94,7 @@ void name(Numbers n, PeopleFinder::Parameters& p) {
 
 void name(Numbers n, HeightPrior::Parameters& p) {
   n.add({N(spread), N(agree), N(share), N(least), N(uncertain), N(repeats), N(guesses), D(through_horizon),
-         N(slope), N(baseline), N(steepest), D(refit), N(least_height), N(zoom)});
+         D(slope_spread), N(baseline), N(steepest), D(refit), N(least_height), N(zoom)});
 }
 
 void name(Numbers n, OutlineFinder::Parameters& p) {

@@ -110,13 +110,13 @@ START_TEST(a_track_is_confirmed_that_was_seen_often_for_long_enough_and_has_move
 }
 END_TEST
 
-START_TEST(a_tentative_track_is_lost_that_mostly_had_no_region_and_has_none_for_confirm_time) {
+START_TEST(a_tentative_track_is_lost_that_mostly_had_no_region_and_has_none_for_long) {
   const auto unseen = [](int hits, double before) {
     return after(track(Tentative{hits, 4}), [&](TrackHypothesis& t) { t.unseen = before; });
   };
-  ck_assert(unseen(1, 0.17) == TrackPhase::lost);       // .21 s, 1 < .5 x 4
-  ck_assert(unseen(1, 0.15) == TrackPhase::tentative);  // .19 s
-  ck_assert(unseen(2, 0.17) == TrackPhase::tentative);
+  ck_assert(unseen(1, 0.09) == TrackPhase::lost);       // .13 s > .6 x .2 s, 1 < .5 x 4
+  ck_assert(unseen(1, 0.07) == TrackPhase::tentative);  // .11 s
+  ck_assert(unseen(2, 0.09) == TrackPhase::tentative);
 }
 END_TEST
 
@@ -412,7 +412,7 @@ int main() {
   return cerberus::tests::run_suite(
       "life_cycle",
       {a_track_is_confirmed_that_was_seen_often_for_long_enough_and_has_moved,
-       a_tentative_track_is_lost_that_mostly_had_no_region_and_has_none_for_confirm_time,
+       a_tentative_track_is_lost_that_mostly_had_no_region_and_has_none_for_long,
        a_track_without_region_is_coasted_and_lost_after_its_time,
        a_track_stops_that_came_and_stood_before_it_had_no_region, a_track_behind_another_one_does_not_stop,
        a_track_does_not_stop_at_the_edge_where_its_place_looks_otherwise,

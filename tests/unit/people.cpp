@@ -135,8 +135,8 @@ START_TEST(two_persons_side_by_side_that_touch_are_two) {
 }
 END_TEST
 
-// The line is known from one row. Further down it expects more than the person has, and is uncertain by as much. What the
-// height costs does not count in the least gain: with it nobody is found.
+// The line is known from one row. Further down it expects more than the person has, and is uncertain by as much. The least
+// gain is compared before the price of the height is taken off: otherwise nobody is found.
 START_TEST(where_the_line_is_uncertain_a_height_may_differ_by_more) {
   for (const bool sure : {false, true}) {
     Scene scene;

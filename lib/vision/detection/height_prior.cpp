@@ -32,8 +32,8 @@ void HeightPrior::learn(double foot, double height, double weight) {
 }
 
 // The line with most agreement among lines through two samples (M. A. Fischler, R. C. Bolles, "Random sample
-// consensus", 1981), then least squares over the samples that agree, with a weak prior on the slope: a horizon at the
-// picture's upper edge, give or take Parameters::slope times as much.
+// consensus", 1981), then least squares over the samples that agree, with a weak prior on the slope: that of a
+// horizon at the picture's upper edge, with a standard deviation of Parameters::slope_spread times itself.
 void HeightPrior::fit() {
   const Parameters& q = parameters_;
   fresh_ = 0;
@@ -79,7 +79,7 @@ void HeightPrior::fit() {
   const double variance = q.spread * mean_height_ * q.spread * mean_height_ * q.repeats;
   const double spread = syy - n * mean_foot_ * mean_foot_, joint = syh - n * mean_foot_ * mean_height_;
   const double usual = mean_height_ / std::max(mean_foot_, 1.0);
-  const double precision = spread / variance, prior = 1 / (q.slope * usual * q.slope * usual);
+  const double precision = spread / variance, prior = 1 / (q.slope_spread * usual * q.slope_spread * usual);
   slope_ = std::clamp((joint / variance + usual * prior) / (precision + prior), 0.0, q.steepest);
   slope_variance_ = 1 / (precision + prior);
   mean_variance_ = variance / n;

@@ -33,9 +33,9 @@ class HeightPrior {
     double repeats = 2.0;
     int guesses = 40;         // pairs of samples tried as lines
     int through_horizon = 4;  // every so manieth guess is a line through the picture's upper edge
-    // Standard deviation of the slope before any sample, times the slope of a horizon at the picture's upper edge: the
-    // cameras of robots see it in the middle. swept: docs/quality.md, 1 to 3.
-    double slope = 2;
+    // Standard deviation of the slope before any sample, times the slope that belongs to a horizon at the picture's upper
+    // edge: the camera of a robot has the horizon in the middle. swept: docs/quality.md, 1 to 3.
+    double slope_spread = 2;
     double baseline = 0.2;    // of the larger height: distance of the foot rows of a pair, at least
     double steepest = 4.0;    // body height / mounting height. derived: a camera at 0.45 m
     int refit = 16;           // a fit after every count / refit samples: later ones hardly change the line

@@ -59,8 +59,8 @@ class PeopleFinder {
     double unknown_spread = 0.4;  // of the logarithm of the height
     double unknown_step = 0.08;   // of the blob's height
     double other_height = 0.08;  // a height that is tried as well is by so much lower or higher than expected
-    // Nats of a squared height, without what the height costs: less is the rest of a person already found. swept:
-    // docs/quality.md, .09 to .11.
+    // Nats of a squared height, before the price of an unusual height is taken off: less is the rest of a person already
+    // found. swept: docs/quality.md, .09 to .11. Guard: MOTA .05 on TUD-Stadtmitte, which jumps with it.
     double least_gain = 0.0975;
     double aspect = 0.36;  // width / height of a walking body
     // Rows of cells that a body is cut into, if it has as many pixels. measured: with 24 MOTA on PETS09-S2L1 is 3
@@ -78,8 +78,10 @@ class PeopleFinder {
     int block_width = 4;  // body widths of a wide block: a row of so many people has gaps
     // Share of gaps, at least, in a row of people; cars have .06 to .10. swept: docs/quality.md, .11 to .14.
     double gaps = 0.13;
-    double gaps_after = 0.16;    // the same where a wide block was a frame ago
-    double gaps_unknown = 0.11;  // the same before the height of people is known
+    double gaps_after = 0.16;  // the same where a wide block was a frame ago
+    // Share of gaps, at least, of people in one blob before their height is known; in a blob with fewer gaps bodies are a
+    // thing. measured as above.
+    double gaps_unknown = 0.11;
   };
   static constexpr std::size_t kMostPeople = 12;  // in one group
 

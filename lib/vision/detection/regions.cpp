@@ -253,10 +253,11 @@ void RegionFinder::State::add_people(int g, const Bounds& window, std::span<cons
   }
 }
 
-// How far a body whose head is free has been from its first place, in heights of the body; 0: its head is hidden now.
+// How far a body whose head is free has been from its first place, in heights of the body. 0: it stands, its head is hidden
+// now, or was not free often enough.
 struct RegionFinder::State::Walked {
   double head_free = 0;  // since the first of the last frames in a row with a free head
-  double at_all = 0;     // since it was found, its head hidden in some frames
+  double at_all = 0;     // since its head was free first; it may have been hidden in some frames
 };
 
 // Records a body of this frame. Where its head is free frame after frame it teaches its height by every stride, as a walker

@@ -99,7 +99,9 @@ inline WalkingBodies::Walk WalkingBodies::add(const Box& box, bool free_head) {
         std::min<double>(h, b.height) < q.same_height * std::max<double>(h, b.height))
       continue;
     nearest = away;
-    body = {foot, b.first, b.last, static_cast<float>(h), b.farthest, b.frames + free_head};
+    // A body hardly fits where its head is hidden: it walks from where its head was free first.
+    body = {foot,       b.frames > 0 ? b.first : foot, b.last, static_cast<float>(h),
+            b.farthest, b.frames + free_head};
   }
   Walk walk;
   if (body.frames >= q.least_frames) {

@@ -36,9 +36,11 @@ class LifeCycle {
     int slow_least_hits = 2;      // or these, at a low frame rate: after slow_confirm x confirm-time
     double slow_confirm = 3;      // times confirm-time
     double confirm_slack = 0.99;  // of confirm-time: rounding of the frame distances adds up
-    // Of the frames in which a tentative track has a region, and of confirm-time that it is kept with fewer. swept:
-    // docs/quality.md, .4 to .6 and .5 to 1.
-    double hit_share = 0.5, tentative_coast = 0.6;
+    // Share of a tentative track's frames that had a region, at least. swept: docs/quality.md, .4 to .6.
+    double hit_share = 0.5;
+    // Times confirm-time without region after which a tentative track with fewer is lost. swept: docs/quality.md, .5 to 1.
+    // Guard: bench-in_window.
+    double tentative_coast = 0.6;
     // Coasting.
     double coast_share = 0.5;   // of the time for which the object was seen
     double border_coast = 0.3;  // of the coast time, at the picture's edge

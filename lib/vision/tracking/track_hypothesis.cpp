@@ -202,6 +202,7 @@ void TrackHypothesis::miss(double seconds) {
   const double time = is(TrackPhase::off_screen) ? parameters->off_screen_brake : parameters->coast_brake;
   const double brake = std::exp(-seconds / time);
   unseen += seconds;
+  in_group = 0;
   x.velocity *= brake;
   y.velocity *= brake;
 }

@@ -80,7 +80,7 @@ struct TrackParameters {
   double panned_misfit = 0.05;
   double extent_known = 0.5;  // s of fitting regions from which on the extent is well known
   // s for which a track has shared a group's region, or its own region was a group, and from which on it is of that kind.
-  // swept: docs/quality.md, .2 to 1.
+  // swept: docs/quality.md, .3 to 1.4.
   double shared_group = 1.0;
   double fragment_walk = 0.5;  // S that a fragment of a standing object moves before it replaces the object
 

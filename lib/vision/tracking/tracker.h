@@ -37,7 +37,8 @@ struct Track {
   double age = 0;  // s since first seen
   double confidence = 0;  // 0..1
   TrackState state = TrackState::seen;
-  RegionKind kind = RegionKind::person_like;  // of the region it was last seen in alone
+  // Of the region that it was last seen in alone; a group's where that lasts (TrackParameters::shared_group).
+  RegionKind kind = RegionKind::person_like;
   // Of the middle of the box from the camera's axis, radians, and along the floor, metres. NaN: not known; filled by
   // Detector.
   double bearing = std::numeric_limits<double>::quiet_NaN();
