@@ -292,6 +292,7 @@ START_TEST(tracks_in_view_are_published_while_their_place_is_certain) {
     return published(track(Coasted{}), change).has_value();
   };
   ck_assert(coasted([](TrackHypothesis& t) { t.x.pp = 15.9 * 15.9; }));  // .4 x 40
+  ck_assert(!coasted([](TrackHypothesis& t) { t.kind = RegionKind::part; }));
   ck_assert(!coasted([](TrackHypothesis& t) { t.x.pp = 16.1 * 16.1; }));
   ck_assert(coasted([](TrackHypothesis& t) { t.x.position = 31; }));
   ck_assert(!coasted([](TrackHypothesis& t) { t.x.position = 29; }));  // its box begins in .1 S

@@ -245,9 +245,9 @@ std::optional<TrackState> LifeCycle::published(const TrackHypothesis& t) const {
   if (t.is(TrackPhase::confirmed)) return TrackState::seen;
   if (!t.in_view() || t.shared.unlocated >= t.parameters->crossing) return {};
   if (t.is(TrackPhase::stopped)) return TrackState::stopped;
-  // A coasted track: while its position is certain; away from the picture's edge, where it probably has left; and if it
-  // was seen for long enough not to be noise.
-  if (std::sqrt(t.x.pp) > q.certain * t.width() || t.at_border(frame_.size) ||
+  // A coasted track: while its position is certain; away from the picture's edge, where it probably has left; if it was
+  // seen for long enough not to be noise; and if it is not a piece of a person, who may have left it behind.
+  if (t.kind == RegionKind::part || std::sqrt(t.x.pp) > q.certain * t.width() || t.at_border(frame_.size) ||
       t.seen_for() < q.proven * options_.confirm_time)
     return {};
   return TrackState::coasted;
