@@ -63,6 +63,15 @@ START_TEST(a_body_whose_head_is_hidden_now_and_then_has_walked_from_the_third_fr
 }
 END_TEST
 
+// The head is hidden in the first three frames: the way begins in the fourth.
+START_TEST(a_body_has_walked_from_where_its_head_was_free_first) {
+  Scene s;
+  for (int k = 0; k < 8; ++k)
+    ck_assert_double_eq_tol(s.see({100.0 + 10 * k, 50, 36, 100}, {}, k >= 3), k >= 5 ? 0.1 * (k - 3) : 0,
+                            1e-6);
+}
+END_TEST
+
 START_TEST(a_body_whose_head_is_never_free_has_not_walked) {
   Scene s;
   for (int k = 0; k < 10; ++k) ck_assert_double_eq(s.see({100.0 + 10 * k, 50, 36, 100}, {}, false), 0);
@@ -117,7 +126,7 @@ int main() {
        a_body_that_stays_in_the_scene_has_not_walked_however_the_camera_turns,
        a_body_that_is_not_where_it_is_expected_begins_anew,
        a_body_whose_head_is_hidden_now_and_then_has_walked_from_the_third_frame_on_that_shows_it,
-       a_body_whose_head_is_never_free_has_not_walked, a_body_goes_on_by_strides_from_where_it_last_went_on,
-       of_two_bodies_each_goes_on_from_the_nearer_place,
+       a_body_has_walked_from_where_its_head_was_free_first, a_body_whose_head_is_never_free_has_not_walked,
+       a_body_goes_on_by_strides_from_where_it_last_went_on, of_two_bodies_each_goes_on_from_the_nearer_place,
        more_bodies_than_there_is_memory_for_have_not_walked});
 }
