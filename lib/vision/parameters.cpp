@@ -63,6 +63,7 @@ void name(Numbers n, RegionParameters& p) {
          N(joined),
          N(least_unknown),
          N(walked_to_be_seen),
+         N(stirs),
          N(walked_if_changed),
          N(changed),
          N(beside),
@@ -106,9 +107,10 @@ void name(Numbers n, BoxEdgeParameters& p) {
 }
 
 void name(Numbers n, PersonBoxParameters& p) {
-  n.add({N(aspect), N(measured), N(reach), N(column), N(below_head), N(above_feet), N(head_reach),
-         N(head_row), N(head_rise), N(head_fall), N(leg_reach), N(foot_row), N(foot_fall), N(shadow_reach),
-         N(legs_from), N(legs_to), N(shadow_wide), N(shadow_from), N(shadow_tip)});
+  n.add({N(aspect),    N(measured),    N(reach),       N(column),     N(below_head),   N(above_feet),
+         N(rests),     N(changes),     N(trunk),       N(head_reach), N(head_row),     N(head_rise),
+         N(head_fall), N(leg_reach),   N(foot_row),    N(foot_fall),  N(shadow_reach), N(legs_from),
+         N(legs_to),   N(shadow_wide), N(shadow_from), N(shadow_tip)});
 }
 
 void name(Numbers n, FreeHeadParameters& p) {

@@ -23,6 +23,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr int kRunsOfMean = 8;
+// Switches that fewer runs may have beyond the mean that is asked: of eight, 23 to 29 were seen around a mean of 24.9.
+constexpr double kMoreSwitches = 5;
+
 // Of the mean, at least; of the switches at most.
 struct AskedOfMean {
   const char* name;
@@ -77,9 +81,10 @@ bool measure(const PeopleSequence& sequence, int runs, Asked& asked) {
       const double value = figure.of(score);
       sum += value, least = std::min(least, value), most = std::max(most, value);
     }
-    const double mean = sum / runs, limit = wanted.*figure.asked;
-    const std::string what = std::string(figure.name) + " on " + sequence.name;
     const bool counted = figure.asked == &AskedOfMean::switches;
+    const double mean = sum / runs,
+                 limit = wanted.*figure.asked + (counted && runs < kRunsOfMean ? kMoreSwitches : 0);
+    const std::string what = std::string(figure.name) + " on " + sequence.name;
     std::string verdict;
     if (counted && limit < 1000) verdict = asked.at_most(what, mean, limit, wanted.promised);
     if (!counted && limit > 0) verdict = asked.at_least(what, mean, limit, wanted.promised);
@@ -92,7 +97,7 @@ bool measure(const PeopleSequence& sequence, int runs, Asked& asked) {
 
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
-  const int runs = argc > 1 ? std::atoi(argv[1]) : 8;
+  const int runs = argc > 1 ? std::atoi(argv[1]) : kRunsOfMean;
   if (runs < 1) {
     std::fprintf(stderr, "bench-verified [RUNS] [SEQUENCE]...: %s is no number of runs\n", argv[1]);
     return 2;

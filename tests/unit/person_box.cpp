@@ -2,6 +2,7 @@
 // Boxes around drawn people, whose pixels are known.
 #include "vision/detection/person_box.h"
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -21,16 +22,23 @@ constexpr Bounds kAll{0, 0, 320, 240};
 const Box kExpected{143, 100, 34, 100};
 
 struct Picture {
-  Image<std::uint8_t> mask{kSize};
+  Image<std::uint8_t> mask{kSize},
+      difference;  // difference: of no size, so not known, until something changes
   BitMask bits;
 
   Picture() { bits.resize(bit_mask_size(kSize)); }
   void fill(double left, double top, double right, double bottom) {
     tests::fill(mask.view(), left, top, right, bottom);
   }
+  // Differs from the frame before there, and nowhere else.
+  void change(double left, double top, double right, double bottom) {
+    if (difference.view().empty()) difference = Image<std::uint8_t>(kSize);
+    tests::fill(difference.view(), left, top, right, bottom);
+  }
   Box fit(const std::vector<Person>& people, std::size_t self = 0) {
     pack(mask.view(), bits.view());
-    return fit_box(bits.view(), kAll, self, people, {.aspect = 0.34, .measured = 1});
+    return fit_box(bits.view(), {difference.view(), 0}, kAll, self, people,
+                   {.aspect = 0.34, .measured = 1, .rests = 0.3});
   }
 };
 
@@ -55,7 +63,7 @@ START_TEST(the_pixels_weigh_more_than_half_against_what_is_expected) {
   picture.fill(150, 104, 170, 197);
   pack(picture.mask.view(), picture.bits.view());
   const std::vector<Person> people{{kExpected, 1}};
-  const Box box = fit_box(picture.bits.view(), kAll, 0, people, {.aspect = 0.34, .measured = 0.6});
+  const Box box = fit_box(picture.bits.view(), {}, kAll, 0, people, {.aspect = 0.34, .measured = 0.6});
   ck_assert_double_eq_tol(box.x, 0.4 * 143 + 0.6 * 150, 1e-9);
   ck_assert_double_eq_tol(box.y, 0.4 * 100 + 0.6 * 104, 1e-9);
   ck_assert_double_eq_tol(box.right(), 0.4 * 177 + 0.6 * 170, 1e-9);
@@ -80,6 +88,60 @@ START_TEST(a_stride_widens_the_box) {
   picture.fill(135, 160, 150, 200);  // 25 rows of the leg count, at least 18 are asked
   const Box box = picture.fit({{kExpected, 1}});
   ck_assert_double_eq(box.x, 135);
+  ck_assert_double_eq(box.right(), 170);
+}
+END_TEST
+
+// The place that a walker has left is foreground beside him where he stood when the scene began: it rests.
+START_TEST(the_place_that_a_walker_has_left_does_not_widen_the_box) {
+  for (const bool right : {false, true}) {
+    Picture picture;
+    picture.fill(145, 100, 175, 200);
+    picture.change(145, 100, 175, 200);
+    right ? picture.fill(175, 100, 190, 200) : picture.fill(130, 100, 145, 200);
+    assert_box(picture.fit({{kExpected, 1}}), 145, 100, 175, 200);
+  }
+}
+END_TEST
+
+// Three pixels of each edge change, not what is between them: an even coat.
+START_TEST(what_rests_between_the_edges_of_a_walker_is_his) {
+  Picture picture;
+  picture.fill(145, 100, 190, 200);
+  picture.change(145, 100, 148, 200);
+  picture.change(172, 100, 175, 200);
+  assert_box(picture.fit({{kExpected, 1}}), 145, 100, 175, 200);
+}
+END_TEST
+
+// Of the 80 rows that count at least .3 must change: 24.
+START_TEST(a_column_of_which_a_third_changes_is_his) {
+  for (const int changes : {24, 23}) {
+    Picture picture;
+    picture.fill(145, 100, 185, 200);
+    picture.change(145, 100, 175, 200);
+    picture.change(175, 110, 185, 110 + changes);
+    ck_assert_double_eq(picture.fit({{kExpected, 1}}).right(), changes == 24 ? 185 : 175);
+  }
+}
+END_TEST
+
+START_TEST(a_person_who_stands_keeps_his_sides) {
+  for (const bool stirs : {false, true}) {
+    Picture picture;
+    picture.fill(145, 100, 175, 200);
+    picture.change(155, 110, 165, stirs ? 133 : 110);  // 230 of his 2400 pixels, less than a tenth
+    assert_box(picture.fit({{kExpected, 1}}), 145, 100, 175, 200);
+  }
+}
+END_TEST
+
+START_TEST(where_only_the_middle_differs_the_trunk_is_left) {
+  Picture picture;
+  picture.fill(140, 100, 180, 200);
+  picture.change(155, 100, 165, 200);
+  const Box box = picture.fit({{kExpected, 1}});
+  ck_assert_double_eq(box.x, 150);
   ck_assert_double_eq(box.right(), 170);
 }
 END_TEST
@@ -137,6 +199,18 @@ START_TEST(a_person_without_pixels_or_outside_the_picture_keeps_a_finite_box) {
 }
 END_TEST
 
+// Of a person whose axis is outside the picture a tenth changes, and no column does enough.
+START_TEST(a_person_whose_axis_is_outside_keeps_a_finite_box) {
+  for (const double x : {-32.0, 318.0}) {
+    Picture picture;
+    picture.fill(0, 100, 320, 200);
+    picture.change(0, 100, 320, 120);
+    const Box box = picture.fit({{{x, 100, 34, 100}, 1}});
+    ck_assert(std::isfinite(box.x) && box.width >= 0 && box.width < 100);
+  }
+}
+END_TEST
+
 // Of a person of 100 pixels the head is 13 rows high and 13 columns wide; beside it are 11 columns on both sides.
 START_TEST(a_head_is_free_where_at_most_a_quarter_of_what_is_beside_it_is_foreground) {
   for (const int covered : {0, 5, 6, 11}) {
@@ -182,9 +256,13 @@ int main() {
       "person_box",
       {the_edges_are_those_of_the_pixels, the_pixels_weigh_more_than_half_against_what_is_expected,
        an_outstretched_hand_and_a_shadow_beside_the_feet_do_not_widen_the_box, a_stride_widens_the_box,
+       the_place_that_a_walker_has_left_does_not_widen_the_box,
+       what_rests_between_the_edges_of_a_walker_is_his, a_column_of_which_a_third_changes_is_his,
+       a_person_who_stands_keeps_his_sides, where_only_the_middle_differs_the_trunk_is_left,
        the_feet_are_in_the_middle_of_the_shadow_around_them, feet_without_a_shadow_are_where_the_pixels_end,
        a_head_that_is_not_where_it_is_expected_is_found_near_by, pixels_belong_to_the_nearer_of_two_persons,
        a_person_without_pixels_or_outside_the_picture_keeps_a_finite_box,
+       a_person_whose_axis_is_outside_keeps_a_finite_box,
        a_head_is_free_where_at_most_a_quarter_of_what_is_beside_it_is_foreground,
        a_body_without_foreground_where_its_head_should_be_has_none,
        a_published_box_is_without_the_edge_that_the_blur_adds});

@@ -310,17 +310,21 @@ START_TEST(who_changes_is_the_same_body_after_his_head_was_hidden) {
 }
 END_TEST
 
-// In an even coat: nothing of him differs from the frame before.
-START_TEST(who_has_walked_a_tenth_of_his_height_is_a_person_in_any_case) {
-  RegionFinder finder = settled();
-  Image<std::uint8_t> difference(kSize);
-  difference.fill_bytes(0);
-  for (int k = 0; k < 4; ++k) {
-    Picture picture;
-    picture.person(100 + 2 * k, 200);
-    const auto regions = finder.update(picture.mask.view(), {}, {}, {difference.view(), 30});
-    ck_assert_uint_eq(regions.size(), 1);
-    ck_assert_int_eq(is_person_like(regions[0]), k == 3);
+// In an even coat only the two columns that he comes into differ from the frame before. Where nothing does, it is the place
+// that somebody has left, in which bodies are found here and there.
+START_TEST(who_has_walked_a_tenth_of_his_height_is_a_person_unless_all_of_him_rests) {
+  for (const int columns : {0, 2}) {
+    RegionFinder finder = settled();
+    for (int k = 0; k < 4; ++k) {
+      Picture picture;
+      const Box walker = picture.person(100 + 2 * k, 200);
+      Image<std::uint8_t> difference(kSize);
+      difference.fill_bytes(0);
+      tests::fill(difference.view(), walker.right() - columns, walker.y, walker.right(), walker.bottom(), 40);
+      const auto regions = finder.update(picture.mask.view(), {}, {}, {difference.view(), 30});
+      ck_assert_uint_eq(regions.size(), 1);
+      ck_assert_int_eq(is_person_like(regions[0]), columns == 2 && k == 3);
+    }
   }
 }
 END_TEST
@@ -406,7 +410,7 @@ START_TEST(head_and_legs_without_a_trunk_are_one_person_once_people_are_known) {
     for (int x = 0; x < 320; ++x) picture.mask.view().at(x, y) = 0;
   const auto regions = picture.find(finder);
   ck_assert_uint_eq(regions.size(), 1);
-  ck_assert_int_eq(matched(regions, {box}, 0.6), 1);
+  ck_assert_int_eq(matched(regions, {box}, 0.5), 1);  // its sides are those of the legs
 }
 END_TEST
 
@@ -738,7 +742,7 @@ int main() {
                   two_people_whose_heads_are_seen_are_two_once_they_have_walked,
                   who_has_walked_little_is_a_person_if_he_changes,
                   who_changes_is_the_same_body_after_his_head_was_hidden,
-                  who_has_walked_a_tenth_of_his_height_is_a_person_in_any_case,
+                  who_has_walked_a_tenth_of_his_height_is_a_person_unless_all_of_him_rests,
                   two_people_whom_only_their_shadow_joins_are_two_from_the_first_frame,
                   two_people_who_stand_are_a_group_before_any_height_is_known,
                   one_person_with_something_much_larger_is_a_group,

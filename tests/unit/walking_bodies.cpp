@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "vision/detection/walking_bodies.h"
 
+#include <algorithm>
+
 #include "support/suite.h"
 
 using namespace cerberus::vision;
@@ -26,6 +28,19 @@ START_TEST(a_body_has_walked_from_its_third_frame_on_and_as_far_as_it_ever_was) 
   ck_assert_double_eq_tol(s.see({120, 50, 36, 100}), 0.2, 1e-6);
   ck_assert_double_eq_tol(s.see({130, 50, 36, 100}), 0.3, 1e-6);
   ck_assert_double_eq_tol(s.see({110, 50, 36, 100}), 0.3, 1e-6);
+}
+END_TEST
+
+// It is found at places farther and farther away, and differs from the frame before in the first four frames only.
+START_TEST(a_body_that_rests_goes_nowhere_and_keeps_its_walk) {
+  WalkingBodies bodies;
+  bodies.preallocate();
+  for (int k = 0; k < 8; ++k) {
+    bodies.advance({});
+    const WalkingBodies::Walk walk = bodies.add({100.0 + 10 * k, 50, 36, 100}, true, k < 4);
+    ck_assert_double_eq_tol(walk.farthest, k < 2 ? 0 : std::min(0.1 * k, 0.3), 1e-6);
+    ck_assert(walk.goes_on == (k == 2 || k == 3));
+  }
 }
 END_TEST
 
@@ -123,6 +138,7 @@ int main() {
   return cerberus::tests::run_suite(
       "walking_bodies",
       {a_body_has_walked_from_its_third_frame_on_and_as_far_as_it_ever_was,
+       a_body_that_rests_goes_nowhere_and_keeps_its_walk,
        a_body_that_stays_in_the_scene_has_not_walked_however_the_camera_turns,
        a_body_that_is_not_where_it_is_expected_begins_anew,
        a_body_whose_head_is_hidden_now_and_then_has_walked_from_the_third_frame_on_that_shows_it,

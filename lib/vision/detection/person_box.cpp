@@ -39,30 +39,63 @@ bool is_others(int x, int y, std::size_t self, std::span<const Person> all) {
   return false;
 }
 
-Interval sides(BitView moving, const Bounds& window, std::size_t self, std::span<const Person> all,
-               const PersonBoxParameters& q) {
+// The foreground around an axis that belongs to one person, by columns.
+struct Columns {
+  std::array<std::uint16_t, kMostColumns> filled, changed;  // pixels; changed: since the frame before
+  Interval range;
+  std::uint16_t filled_at(int x) const { return filled[static_cast<std::size_t>(x - range.from)]; }
+  std::uint16_t changed_at(int x) const { return changed[static_cast<std::size_t>(x - range.from)]; }
+};
+
+void count_columns(BitView moving, const Change& change, const Bounds& window, std::size_t self,
+                   std::span<const Person> all, const PersonBoxParameters& q, Columns& columns) {
+  const Box& body = all[self].box;
+  const Interval range = columns.range;
+  std::fill_n(columns.filled.begin(), range.to - range.from, std::uint16_t{0});
+  std::fill_n(columns.changed.begin(), range.to - range.from, std::uint16_t{0});
+  const int top = std::max(window.top, static_cast<int>(body.y + q.below_head * body.height));
+  const int bottom = std::min(window.bottom, static_cast<int>(body.y + q.above_feet * body.height));
+  for (int y = top; y < bottom; ++y)
+    for_bits(moving.row(y), range.from, range.to, [&](int x) {
+      if (all.size() > 1 && is_others(x, y, self, all)) return;
+      const auto i = static_cast<std::size_t>(x - range.from);
+      ++columns.filled[i];
+      columns.changed[i] += change.at(x, y);
+    });
+}
+
+// Without the outermost columns that rest, where the body does not.
+Interval without_resting(Interval sides, const Columns& columns, double axis, double height,
+                         const PersonBoxParameters& q) {
+  long filled = 0, changed = 0;
+  for (int x = sides.from; x < sides.to; ++x) {
+    filled += columns.filled_at(x);
+    changed += columns.changed_at(x);
+  }
+  if (static_cast<double>(changed) < q.changes * static_cast<double>(filled)) return sides;
+  const auto rests = [&](int x) { return columns.changed_at(x) < q.rests * columns.filled_at(x); };
+  while (sides.from < sides.to && sides.from < axis - q.trunk * height && rests(sides.from)) ++sides.from;
+  while (sides.to > sides.from && sides.to > axis + q.trunk * height && rests(sides.to - 1)) --sides.to;
+  return sides;
+}
+
+Interval sides(BitView moving, const Change& change, const Bounds& window, std::size_t self,
+               std::span<const Person> all, const PersonBoxParameters& q) {
   const Box& body = all[self].box;
   const double h = body.height, axis = body.x + body.width / 2;
-  Interval columns = around(axis, q.reach * h, window);
-  columns.to = std::min(columns.to, columns.from + kMostColumns);
-  if (columns.from >= columns.to) return {};
-  std::array<std::uint16_t, kMostColumns> filled;
-  std::fill_n(filled.begin(), columns.to - columns.from, std::uint16_t{0});
-  const int top = std::max(window.top, static_cast<int>(body.y + q.below_head * h));
-  const int bottom = std::min(window.bottom, static_cast<int>(body.y + q.above_feet * h));
-  for (int y = top; y < bottom; ++y)
-    for_bits(moving.row(y), columns.from, columns.to, [&](int x) {
-      if (all.size() == 1 || !is_others(x, y, self, all))
-        ++filled[static_cast<std::size_t>(x - columns.from)];
-    });
-  const auto is_full = [&](int x) {
-    return filled[static_cast<std::size_t>(x - columns.from)] >= q.column * h;
-  };
+  Columns columns;
+  Interval& range = columns.range;
+  range = around(axis, q.reach * h, window);
+  range.to = std::min(range.to, range.from + kMostColumns);
+  if (range.from >= range.to) return {};
+  count_columns(moving, change, window, self, all, q, columns);
+  const auto is_full = [&](int x) { return columns.filled_at(x) >= q.column * h; };
   Interval full;
-  full.from = full.to = std::clamp(static_cast<int>(axis), columns.from, columns.to - 1);
-  while (full.from > columns.from && is_full(full.from - 1)) --full.from;
-  while (full.to + 1 < columns.to && is_full(full.to + 1)) ++full.to;
-  return {full.from, full.to + 1};
+  full.from = full.to = std::clamp(static_cast<int>(axis), range.from, range.to - 1);
+  while (full.from > range.from && is_full(full.from - 1)) --full.from;
+  while (full.to + 1 < range.to && is_full(full.to + 1)) ++full.to;
+  ++full.to;
+  return without_resting(full, columns, axis, h, q);
 }
 
 // The first row of the head; the expected one where there is no foreground.
@@ -137,11 +170,11 @@ bool has_free_head(BitView moving, Size picture, const Box& body, const FreeHead
          (beside(-q.beside_to, -q.beside_from) + beside(q.beside_from, q.beside_to)) / 2 < q.most_beside;
 }
 
-Box fit_box(BitView moving, const Bounds& window, std::size_t self, std::span<const Person> all,
-            const PersonBoxParameters& q) {
+Box fit_box(BitView moving, const Change& change, const Bounds& window, std::size_t self,
+            std::span<const Person> all, const PersonBoxParameters& q) {
   const Box& body = all[self].box;
   const double h = body.height, axis = body.x + body.width / 2;
-  const Interval full = sides(moving, window, self, all, q);
+  const Interval full = sides(moving, change, window, self, all, q);
   if (full.from >= full.to) return body;
   const double top = head(moving, window, body, q);
   const double bottom = foot(moving, window, around(axis, q.shadow_reach * h, window), static_cast<int>(top),

@@ -46,6 +46,10 @@ struct RegionParameters {
   // Heights of a body that it has walked, its head free all the way, before it is published. measured: with .08 the place of
   // a person who leaves is a region for a frame (unit places).
   double walked_to_be_seen = 0.1;
+  // Share of a body's foreground that differs from the frame before, at least, where it goes somewhere: bodies are found here
+  // and there in the place that somebody has left. 25 frames a second. swept: docs/quality.md, 0 to .1. Guard: unit steady,
+  // where that place is a region for a frame with 0.
+  double stirs = 0.03;
   // Heights of a body that changes, which it has walked before it is published; its head may have been hidden in some frames.
   // `changed` is the share of its foreground, at least, that differs from the frame before: the place that a person has left
   // rests. swept: docs/quality.md, 0 to .1 and 0 to .4. Guard: unit (places, steady), where that place is a region for a frame

@@ -80,7 +80,7 @@ struct RegionFinder::State {
   struct Walked;
   Walked walked(const Box& body);
   bool walks(const Box& body);
-  bool changes(const Box& body) const;
+  double changed(const Box& body) const;
   void add_plain(std::size_t component, RegionKind kind = RegionKind::thing);
   RegionKind kind_of(const Component& unexplained) const;
   double unexplained(const Bounds& window, std::span<const Person> people) const;
@@ -240,7 +240,7 @@ void RegionFinder::State::add_people(int g, const Bounds& window, std::span<cons
   const auto parts = labeller.components();
   const auto first = std::ranges::find(group, g) - group.begin();
   for (std::size_t k = 0; k < found.size() && regions.size() < regions.capacity(); ++k)
-    regions.push_back({fit_box(moving.view(), window, k, found, parameters.box), 0,
+    regions.push_back({fit_box(moving.view(), change, window, k, found, parameters.box), 0,
                        std::clamp(0.5 + 0.5 * found[k].score, 0.5, 1.0), static_cast<int>(first) + 1,
                        RegionKind::person_like});
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -258,21 +258,24 @@ void RegionFinder::State::add_people(int g, const Bounds& window, std::span<cons
 struct RegionFinder::State::Walked {
   double head_free = 0;  // since the first of the last frames in a row with a free head
   double at_all = 0;     // since its head was free first; it may have been hidden in some frames
+  double changed = 0;    // share of its foreground that differs from the frame before
 };
 
 // Records a body of this frame. Where its head is free frame after frame it teaches its height by every stride, as a walker
 // does: where people are never alone, and where the line of the heights is steeper than expected.
 RegionFinder::State::Walked RegionFinder::State::walked(const Box& body) {
   const bool free_head = has_free_head(moving.view(), size, body, parameters.head);
-  const WalkingBodies::Walk any = bodies.add(body, free_head);
+  const double share = changed(body);
+  const bool stirs = share >= parameters.regions.stirs;
+  const WalkingBodies::Walk any = bodies.add(body, free_head, stirs);
   if (!free_head) return {};
-  const WalkingBodies::Walk walk = free_heads.add(body, true);
+  const WalkingBodies::Walk walk = free_heads.add(body, true, stirs);
   if (walk.goes_on) prior.learn(body.bottom(), body.height, body.height);
-  return {walk.farthest, any.farthest};
+  return {walk.farthest, any.farthest, share};
 }
 
-// Returns whether enough of a body's foreground differs from the frame before: the place that a person has left rests.
-bool RegionFinder::State::changes(const Box& body) const {
+// Share of a body's foreground that differs from the frame before: the place that a person has left rests.
+double RegionFinder::State::changed(const Box& body) const {
   const int left = std::clamp(static_cast<int>(body.x), 0, size.width),
             right = std::clamp(static_cast<int>(body.right()), 0, size.width);
   long all = 0, changed = 0;
@@ -282,7 +285,7 @@ bool RegionFinder::State::changes(const Box& body) const {
       ++all;
       changed += change.at(x, y);
     });
-  return static_cast<double>(changed) >= parameters.regions.changed * static_cast<double>(all);
+  return all > 0 ? static_cast<double>(changed) / static_cast<double>(all) : 0;
 }
 
 // Records a body of this frame. Returns whether its head is free and it has walked. What hardly changes must have walked
@@ -291,7 +294,7 @@ bool RegionFinder::State::walks(const Box& body) {
   const RegionParameters& p = parameters.regions;
   const Walked far = walked(body);
   return far.head_free > p.walked_to_be_seen ||
-         (std::max(far.head_free, far.at_all) > p.walked_if_changed && changes(body));
+         (std::max(far.head_free, far.at_all) > p.walked_if_changed && far.changed >= p.changed);
 }
 
 // A blob before the height of people is known. The bodies that explain it are persons where their heads are seen and they

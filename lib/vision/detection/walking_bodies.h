@@ -46,8 +46,9 @@ class WalkingBodies {
   void reset();
   // Called once a frame, before add(). motion: frame k-1 to k, pixels.
   void advance(const Transform& motion);
-  // Records a body of this frame, pixels. Returns its walk; none before its head was free in least_frames frames.
-  Walk add(const Box& body, bool free_head);
+  // Records a body of this frame, pixels. Returns its walk; none before its head was free in least_frames frames. stirs: it
+  // differs from the frame before. What rests goes nowhere in this frame, wherever it is found, and keeps its walk.
+  Walk add(const Box& body, bool free_head, bool stirs = true);
   std::size_t bytes() const;
 
  private:
@@ -85,7 +86,7 @@ inline void WalkingBodies::advance(const Transform& motion) {
     }
 }
 
-inline WalkingBodies::Walk WalkingBodies::add(const Box& box, bool free_head) {
+inline WalkingBodies::Walk WalkingBodies::add(const Box& box, bool free_head, bool stirs) {
   const Parameters& q = parameters_;
   if (now_.size() == kMost) return {};
   const double h = box.height;
@@ -104,7 +105,8 @@ inline WalkingBodies::Walk WalkingBodies::add(const Box& box, bool free_head) {
             b.farthest, b.frames + free_head};
   }
   Walk walk;
-  if (body.frames >= q.least_frames) {
+  if (body.frames >= q.least_frames) walk.farthest = body.farthest;
+  if (body.frames >= q.least_frames && stirs) {
     walk.farthest = std::max<double>(body.farthest, distance(foot, body.first) / h);
     walk.goes_on = distance(foot, body.last) > q.stride * h;
     body.farthest = static_cast<float>(walk.farthest);

@@ -27,7 +27,8 @@ struct TrackParameters {
   double size_noise = 0.15;      // of the logarithm, standard deviation of a region's extent
   double size_wander = 0.15 * 0.15;  // 1/s. derived: a person's extent changes by 15 % in a second
   double border_wander = 1.5 * 1.5;  // 1/s, of an extent that the picture's edge cuts
-  double fade = 20.0;                // times less that a shrinking extent counts for a standing object
+  // Times less that a shrinking extent counts for a standing object. swept: docs/quality.md, 1 to 20.
+  double fade = 2.0;
   double stopped_wander = 0.1;       // S/sqrt(s) by which the place of a stopped track becomes uncertain
   double stopped_uncertainty = 0.5;  // S, the most that this may add up to
   double coast_brake = 1.0;          // s, time constant in which a coasted track slows down
