@@ -47,10 +47,11 @@ struct Columns {
   std::uint16_t changed_at(int x) const { return changed[static_cast<std::size_t>(x - range.from)]; }
 };
 
-void count_columns(BitView moving, const Change& change, const Bounds& window, std::size_t self,
-                   std::span<const Person> all, const PersonBoxParameters& q, Columns& columns) {
+Columns columns_of(BitView moving, const Change& change, const Bounds& window, std::size_t self,
+                   std::span<const Person> all, const PersonBoxParameters& q, Interval range) {
   const Box& body = all[self].box;
-  const Interval range = columns.range;
+  Columns columns;
+  columns.range = range;
   std::fill_n(columns.filled.begin(), range.to - range.from, std::uint16_t{0});
   std::fill_n(columns.changed.begin(), range.to - range.from, std::uint16_t{0});
   const int top = std::max(window.top, static_cast<int>(body.y + q.below_head * body.height));
@@ -62,6 +63,7 @@ void count_columns(BitView moving, const Change& change, const Bounds& window, s
       ++columns.filled[i];
       columns.changed[i] += change.at(x, y);
     });
+  return columns;
 }
 
 // Without the outermost columns that rest, where the body does not.
@@ -83,12 +85,10 @@ Interval sides(BitView moving, const Change& change, const Bounds& window, std::
                std::span<const Person> all, const PersonBoxParameters& q) {
   const Box& body = all[self].box;
   const double h = body.height, axis = body.x + body.width / 2;
-  Columns columns;
-  Interval& range = columns.range;
-  range = around(axis, q.reach * h, window);
+  Interval range = around(axis, q.reach * h, window);
   range.to = std::min(range.to, range.from + kMostColumns);
   if (range.from >= range.to) return {};
-  count_columns(moving, change, window, self, all, q, columns);
+  const Columns columns = columns_of(moving, change, window, self, all, q, range);
   const auto is_full = [&](int x) { return columns.filled_at(x) >= q.column * h; };
   Interval full;
   full.from = full.to = std::clamp(static_cast<int>(axis), range.from, range.to - 1);
