@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Does detection go on while the camera turns? A window of 320 x 240 goes to and fro over vtest.avi at 12 pixels a
 // frame; beside it windows at rest over the same places. Box precision and recall of both, as tests/bench/quality.cpp
-// scores them, on the people as the window cuts them.
+// scores them, on the people as the window cuts them. And does who it is stay who it is, when the window comes back to
+// him? IDF1, one identity a person and way, groups on neither side.
 #include <cerberus/cerberus.h>
 #include <gst/video/video.h>
 
@@ -11,7 +12,9 @@
 
 #include "asked.h"
 #include "boxes.h"
+#include "people_sequences.h"
 #include "support/data.h"
+#include "tracks.h"
 #include "vision/geometry/window.h"
 
 using namespace cerberus;
@@ -70,8 +73,8 @@ void send_pose(GstElement* pipeline, const Window& window, int number, GstClockT
   gst_object_unref(out);
 }
 
-bool measure(Counts& counts, const std::string& source, const People& truth, const std::string& detector,
-             const Window& window) {
+bool measure(Counts& counts, TrackScore& identities, const std::string& source, const People& truth,
+             const std::string& detector, const Window& window) {
   const double top = (kPicture.height - kWindow.height) / 2.0;
   GstElement* pipeline = nullptr;
   return for_each_sample(
@@ -85,18 +88,24 @@ bool measure(Counts& counts, const std::string& source, const People& truth, con
         if (people == truth.end()) return;
         const double left = window.left(n);
         std::vector<vision::Box> found = found_boxes(buffer), there, half;
+        std::vector<Person> people_found = people_of(found_on(buffer)), people_there;
         for (const Person& p : people->second) {
           const vision::Box seen = clip(p.box, left, top);
           if (!(seen.width > 0 && seen.height > 0)) continue;
-          (seen.area() >= kLeastSeen * p.box.area() ? there : half).push_back(seen);
+          const bool mostly = seen.area() >= kLeastSeen * p.box.area();
+          (mostly ? there : half).push_back(seen);
+          if (mostly) people_there.push_back({p.id, seen});
         }
-        std::erase_if(found, [&](const vision::Box& b) {
+        const auto unscored = [&](const vision::Box& b) {
           const auto covers = [&](const vision::Box& h) {
             return vision::overlap_area(b, h) > 0.5 * b.area();
           };
           return left + b.right() > kTruthEnds || std::ranges::any_of(half, covers);
-        });
+        };
+        std::erase_if(found, unscored);
+        std::erase_if(people_found, [&](const Person& p) { return unscored(p.box); });
         match(counts, found, there);
+        identities.add(people_there, people_found);
       },
       [&](GstElement* p) { pipeline = p; });
 }
@@ -116,27 +125,36 @@ int main(int argc, char** argv) {
   std::vector<std::string> detectors{kJudged,
                                      "cameramotion ! threeframediff ! fuzzythreshold ! motionregions"};
   if (argc > 1) detectors.assign(argv + 1, argv + argc);
-  std::printf("A window of 320x240 over vtest.avi, %d ways or places each, IoU >= 0.5   precision  recall\n",
-              kPhases);
+  std::printf(
+      "A window of 320x240 over vtest.avi, %d ways or places each, IoU >= 0.5   precision  recall   IDF1\n",
+      kPhases);
   Asked asked;
   for (const std::string& detector : detectors) {
     Counts rest, moving;
+    double idf1_rest = 0, idf1_moving = 0;  // means of the ways or places
     for (int i = 0; i < kPhases; ++i) {
-      if (!measure(rest, *source, truth, detector, {2 * kReach * (i + 0.5) / kPhases, 0}) ||
-          !measure(moving, *source, truth, detector, {4 * kReach * (i + 0.5) / kPhases, kSpeed}))
+      TrackScore at_rest, on_the_way;
+      if (!measure(rest, at_rest, *source, truth, detector, {2 * kReach * (i + 0.5) / kPhases, 0}) ||
+          !measure(moving, on_the_way, *source, truth, detector, {4 * kReach * (i + 0.5) / kPhases, kSpeed}))
         return 1;
+      idf1_rest += at_rest.idf1() / kPhases;
+      idf1_moving += on_the_way.idf1() / kPhases;
     }
     std::printf("%s\n", detector.c_str());
-    for (const auto& [name, c] : {std::pair{"at rest", rest}, {"at 12 pixels a frame", moving}})
-      std::printf("  %-40s %.3f  %.3f   (%.0f right, %.0f wrong, %.0f missed)\n", name, c.precision(),
-                  c.recall(), c.hit, c.extra, c.missed);
+    const auto row = [](const char* name, const Counts& c, double idf1) {
+      std::printf("  %-40s %.3f  %.3f  %.3f   (%.0f right, %.0f wrong, %.0f missed)\n", name, c.precision(),
+                  c.recall(), idf1, c.hit, c.extra, c.missed);
+    };
+    row("at rest", rest, idf1_rest);
+    row("at 12 pixels a frame", moving, idf1_moving);
     struct Figure {
       const char* name;
       double reached, least;
     };
     for (const Figure& f : {Figure{"precision, moving / at rest", moving.precision() / rest.precision(), 0.9},
                             {"recall, moving / at rest", moving.recall() / rest.recall(), 0.9},
-                            {"recall, moving", moving.recall(), 0.71}})
+                            {"recall, moving", moving.recall(), 0.71},
+                            {"IDF1, moving / at rest", idf1_moving / idf1_rest, 0.9}})
       std::printf("  %-40s %.3f%s\n", f.name, f.reached,
                   detector == kJudged ? asked.at_least(f.name, f.reached, f.least).c_str() : "");
   }

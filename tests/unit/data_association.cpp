@@ -96,6 +96,38 @@ START_TEST(a_track_comes_back_as_a_region_of_at_most_twice_its_area) {
 }
 END_TEST
 
+// A fragment of neither extent may be anybody's.
+START_TEST(a_track_comes_back_as_a_region_of_its_height_or_of_its_width) {
+  for (const Box& box : {Box{0, 100, 16, 100}, Box{0, 100, 40, 40}, Box{0, 100, 16, 40}}) {
+    for (const bool away : {true, false}) {
+      Scene s{{track({0, 100, 40, 100}, away ? TrackLife(OffScreen{}) : TrackLife(Coasted{}))},
+              {region(box.x, box.y, box.width, box.height)},
+              {},
+              {}};
+      ck_assert_int_eq(s.associate()[0].region, away && box.area() == 640 ? -1 : 0);
+    }
+  }
+}
+END_TEST
+
+// Neither fits well: both cost more than a pair may.
+START_TEST(of_two_tracks_that_may_have_come_back_the_nearer_one_has) {
+  for (const bool first : {true, false}) {
+    Scene s{{track({first ? 80.0 : 150.0, 100, 60, 150}, OffScreen{}),
+             track({first ? 150.0 : 80.0, 100, 60, 150}, OffScreen{})},
+            {region(0, 130, 20, 100)},
+            {},
+            {}};
+    for (TrackHypothesis& t : s.tracks)
+      for (MovingValue* a : {&t.x, &t.y}) a->pp = 100 * 100;
+    for (const TrackHypothesis& t : s.tracks) ck_assert_double_gt(t.distance(s.regions[0].box, kFrame), 2);
+    const auto matches = s.associate();
+    ck_assert_int_eq(matches[first ? 0 : 1].region, 0);
+    ck_assert_int_eq(matches[first ? 1 : 0].region, -1);
+  }
+}
+END_TEST
+
 START_TEST(a_fragment_completes_the_region_of_its_track) {
   Scene s{{track({100, 100, 40, 100})}, {region(100, 130, 40, 70), region(110, 100, 20, 20)}, {}, {}};
   ck_assert_int_eq(s.associate()[0].region, 0);
@@ -234,7 +266,9 @@ int main() {
       {each_track_has_the_region_at_its_place_and_what_is_left_is_new,
        a_track_in_view_comes_before_a_tentative_one_that_is_nearer,
        an_off_screen_track_comes_before_a_tentative_one_and_has_no_region_while_it_is_behind_the_camera,
-       a_track_comes_back_as_a_region_of_at_most_twice_its_area, a_fragment_completes_the_region_of_its_track,
+       a_track_comes_back_as_a_region_of_at_most_twice_its_area,
+       a_track_comes_back_as_a_region_of_its_height_or_of_its_width,
+       of_two_tracks_that_may_have_come_back_the_nearer_one_has, a_fragment_completes_the_region_of_its_track,
        a_person_like_region_is_neither_a_fragment_nor_completed,
        two_upright_regions_side_by_side_are_two_persons_and_not_fragments_of_one,
        a_track_without_region_shares_the_blob_it_is_expected_in_unless_it_has_stopped,

@@ -231,11 +231,14 @@ START_TEST(a_track_that_leaves_keeps_its_direction_and_what_was_not_cut) {
   for (const bool stopped : {false, true}) {
     TrackHypothesis t = track(stopped ? TrackLife(Stopped{}) : TrackLife(Coasted{}));
     t.x.velocity = 5;
-    t.uncut = {44, 110, {30, -12}, true};
+    // Half a second before it was seen whole at (305, 246), or where it stands; as large as a group, once.
+    const Box whole = stopped ? Box{298, 185, 44, 110} : Box{283, 191, 44, 110};
+    t.uncut = {88, 220, {30, -12}, true, whole, 0.5};
+    t.x.pv = t.x.vv = 1e6;
     t.fit.misfit = 1;
     LifeCycle::leave(t, camera());
     const OffScreen& away = std::get<OffScreen>(t.life);
-    // (320, 240) is on the camera's axis.
+    // (320, 240), where it should be now, is on the camera's axis.
     ck_assert_double_eq_tol(away.direction.bearing, 0.5, 1e-9);
     ck_assert_double_eq_tol(away.direction.elevation, -0.25, 1e-9);
     ck_assert_double_eq_tol(away.magnification, 1, 1e-9);
@@ -245,7 +248,15 @@ START_TEST(a_track_that_leaves_keeps_its_direction_and_what_was_not_cut) {
     ck_assert_double_eq_tol(t.width(), 44, 1e-9);
     ck_assert_double_eq_tol(t.height(), 110, 1e-9);
     ck_assert_double_eq(t.fit.misfit, 0);
+    // S is 110: of .3 S/s.
+    ck_assert_double_eq_tol(t.x.vv, 33 * 33, 1e-9);
+    ck_assert_double_eq(t.x.pv, 0);
   }
+  TrackHypothesis never = track(Coasted{});  // never seen whole: of the largest extent so far
+  never.uncut = {44, 110, {}, true, {}, 0};
+  LifeCycle::leave(never, camera());
+  ck_assert_double_eq_tol(never.width(), 44, 1e-9);
+  ck_assert_double_eq_tol(never.x.position, 320, 1e-9);
 }
 END_TEST
 
@@ -256,6 +267,8 @@ START_TEST(a_track_that_comes_back_is_what_it_was_and_takes_the_place_of_its_reg
     ck_assert(t.is(stopped ? TrackPhase::stopped : TrackPhase::coasted));
     ck_assert_double_eq_tol(t.box().x, 100, 1e-9);
     ck_assert_double_eq_tol(t.box().bottom(), 130, 1e-9);
+    // He is 40 x 100: the region shows a part of him.
+    ck_assert_double_eq_tol(t.uncut.whole.width, 40, 1e-9);
     LifeCycle::see(t);
     ck_assert(t.is(TrackPhase::confirmed));
   }

@@ -23,6 +23,7 @@ TrackHypothesis walker(double x, double y) {
   TrackHypothesis track = TrackHypothesis::first_seen({{x - 20, y - 50, 40, 100}, 2000, 0.9, 1});
   track.uncut.width = 44;
   track.uncut.height = 110;
+  track.uncut.whole = {x - 22, y - 55, 44, 110};
   track.x.velocity = track.uncut.velocity.x = 30;
   track.y.velocity = track.uncut.velocity.y = -12;
   track.x.pv = 7;
@@ -39,6 +40,8 @@ void check_scaled(const TrackHypothesis& before, const TrackHypothesis& after, d
   equal(after.height(), scale * before.height());
   equal(after.uncut.width, scale * before.uncut.width);
   equal(after.uncut.height, scale * before.uncut.height);
+  equal(after.uncut.whole.width, scale * before.uncut.whole.width);
+  equal(after.uncut.whole.height, scale * before.uncut.whole.height);
   equal(after.x.velocity, scale * before.x.velocity);
   equal(after.y.velocity, scale * before.y.velocity);
   equal(after.uncut.velocity.x, scale * before.uncut.velocity.x);
@@ -58,6 +61,9 @@ START_TEST(a_zoom_scales_all_of_its_lengths) {
   const double grain = after.x.pp / 2.25 - before.x.pp;  // a pixel of the analysed picture, whatever that is
   ck_assert_double_gt(grain, 0);
   check_scaled(before, after, 1.5, grain, 1e-9);
+  // The box as it was last seen whole stays around the same place of the scene.
+  ck_assert_double_eq_tol(after.uncut.whole.x + after.uncut.whole.width / 2, after.x.position, 1e-9);
+  ck_assert_double_eq_tol(after.uncut.whole.bottom() - after.uncut.whole.height / 2, after.y.position, 1e-9);
 }
 END_TEST
 
@@ -106,9 +112,10 @@ START_TEST(towards_the_picture_s_middle_an_off_screen_track_shrinks_as_a_pinhole
   };
   const double scale = side(40 * kDegree) / side(0);
   ck_assert_double_lt(scale, 0.7);
-  const TrackHypothesis before = walker(320 + 320 * std::tan(40 * kDegree), 240);
-  TrackHypothesis track = before;
+  TrackHypothesis track = walker(320 + 320 * std::tan(40 * kDegree), 240);
   LifeCycle::leave(track, {lens, 0, 0});
+  track.x.pv = 7;
+  const TrackHypothesis before = track;
   track.predict_off_screen(0, {lens, 40 * kDegree, 0});
   ck_assert_double_eq_tol(track.x.position, 320, 1);
   check_scaled(before, track, scale, 0, 1e-4);

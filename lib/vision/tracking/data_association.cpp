@@ -78,19 +78,24 @@ double DataAssociation::pair_cost(const TrackHypothesis& t, std::size_t j) const
   if (too_fast(t, distance_between(t, region.box))) return Assignment::kForbidden;
   const double appearance = appearance_cost(t, j);
   if (appearance < 0) return Assignment::kForbidden;
-  return std::min(distance + appearance, q.worst);
+  const double cost = distance + appearance;
+  if (cost <= q.worst || !returns) return std::min(cost, q.worst);
+  // Of several who may have come back the likeliest has.
+  return q.unmatched - (q.unmatched - q.worst) * q.worst / cost;
 }
 
 // Cost of a difference in appearance; negative: another object. Only a region of the track's own extent shows all of it
-// and nothing else: no other is compared.
+// and nothing else: no other is compared, but those that the picture's edge cuts as a track comes back.
 double DataAssociation::appearance_cost(const TrackHypothesis& t, std::size_t j) const {
   const Parameters& q = parameters_;
   const bool returns = turn_of(t) == Turn::off_screen;
   const Box expected = returns ? t.visible(frame_.size) : t.box(), &seen = regions_[j].box;
-  if (!t.has_appearance() ||
-      !compare_extents(expected.x, expected.right(), seen.x, seen.right(), *t.parameters).same_extent ||
-      !compare_extents(expected.y, expected.bottom(), seen.y, seen.bottom(), *t.parameters).same_extent)
-    return 0;
+  const bool wide =
+      compare_extents(expected.x, expected.right(), seen.x, seen.right(), *t.parameters).same_extent;
+  const bool high =
+      compare_extents(expected.y, expected.bottom(), seen.y, seen.bottom(), *t.parameters).same_extent;
+  if (returns && !wide && !high) return -1;
+  if (!t.has_appearance() || (!returns && !(wide && high))) return 0;
   const double difference = appearance_distance(t.appearance.model, appearances_->of(j));
   if (difference > (returns ? q.off_screen_change : t.appearance.change + q.sudden_change)) return -1;
   return q.appearance_cost * std::max(0.0, difference - q.usual_change);

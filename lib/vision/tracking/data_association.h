@@ -36,7 +36,7 @@ class DataAssociation {
     double usual_change = 0.15;    // costs nothing
     double appearance_cost = 3.0;  // per unit beyond it
     double sudden_change = 0.45;  // more than the last one by this: another object (shade comes step by step)
-    double off_screen_change = 0.35;  // the most for a track that comes back into the picture
+    double off_screen_change = 0.4;  // the most for a track that comes back into the picture
 
     // Blobs of several.
     double larger = 1.3;            // times the area of a track: a region that may hold others

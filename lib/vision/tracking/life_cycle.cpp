@@ -32,10 +32,7 @@ void LifeCycle::leave(TrackHypothesis& t, const CameraOrientation& camera) {
   // The velocity of the part at the picture's edge is not used: its centre lags behind the object's.
   t.x.velocity = still ? 0 : t.uncut.velocity.x;
   t.y.velocity = still ? 0 : t.uncut.velocity.y;
-  if (t.uncut.leaving) {
-    t.w.value = std::log(t.uncut.width);
-    t.h.value = std::log(t.uncut.height);
-  }
+  t.restore_whole();
   t.fit.misfit = 0;
   const Direction direction = camera.direction({t.x.position, t.y.position});
   t.life = OffScreen{direction, camera.magnification(direction), true, stopped, 0};
@@ -47,6 +44,7 @@ void LifeCycle::come_back(TrackHypothesis& t, const Box& seen) {
     t.life = Stopped{};
   else
     t.life = Coasted{};
+  t.find_whole(seen);
   t.adopt(seen);
 }
 

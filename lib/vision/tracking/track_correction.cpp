@@ -37,6 +37,10 @@ void TrackHypothesis::correct(const Region& region, bool alone, double seconds, 
   take_kind(region.kind, alone, how.fits, seconds);
   if (!alone && !match.occluded && !how.stays) shrink_into(seen);
   if (!how.cut()) uncut.velocity = {x.velocity, y.velocity};
+  if (!how.cut() && alone && fit.misfit == 0) {
+    uncut.whole = box();
+    uncut.since = 0;
+  }
   uncut.width = std::max(uncut.width, width());
   uncut.height = std::max(uncut.height, height());
   note_seen(region.confidence, how.fits, before, seconds);

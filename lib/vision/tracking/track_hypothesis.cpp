@@ -85,7 +85,9 @@ bool TrackHypothesis::predict(double seconds, bool camera_moves) {
       a->pp = std::min(a->pp + square(q.stopped_wander * s) * seconds,
                        std::max(square(q.stopped_uncertainty * s), a->pp));
   } else {
-    const double acceleration = camera_moves ? q.panned_acceleration : q.acceleration;
+    const double acceleration = is(TrackPhase::off_screen) ? q.off_screen_acceleration
+                                : camera_moves             ? q.panned_acceleration
+                                                           : q.acceleration;
     const double faster = std::max(1.0, speed() / (q.fast * s));
     for (MovingValue* a : {&x, &y}) a->predict(seconds, acceleration * square(faster * s));
   }
@@ -94,6 +96,7 @@ bool TrackHypothesis::predict(double seconds, bool camera_moves) {
   if (auto* data = std::get_if<Tentative>(&life)) ++data->frames;
   match = {};
   appearance.since_contact += seconds;
+  uncut.since += seconds;
   return std::isfinite(x.position) && std::isfinite(y.position);
 }
 
@@ -102,7 +105,9 @@ void TrackHypothesis::magnify(double scale) {
   for (MovingValue* a : {&x, &y})
     for (double* p : {&a->pp, &a->pv, &a->vv}) *p *= scale * scale;
   for (double* e : {&w.value, &h.value, &travel.log_width, &travel.log_height}) *e += std::log(scale);
-  for (double* l : {&uncut.width, &uncut.height, &travel.top_rise, &travel.bottom_drop}) *l *= scale;
+  for (double* l : {&uncut.width, &uncut.height, &uncut.whole.width, &uncut.whole.height, &travel.top_rise,
+                    &travel.bottom_drop})
+    *l *= scale;
 }
 
 // How far, in S, its edges have gone because it came nearer or went away: the centre of an object that walks straight
@@ -147,7 +152,10 @@ bool TrackHypothesis::carry(const Transform& motion, Size frame) {
   x.velocity = velocity.x;
   y.velocity = velocity.y;
   uncut.velocity = turned(uncut.velocity);
+  const Point whole = motion.apply({centre(uncut.whole).x - kHalfPixel, centre(uncut.whole).y - kHalfPixel});
   magnify(std::sqrt(det));
+  uncut.whole.x = whole.x + kHalfPixel - uncut.whole.width / 2;
+  uncut.whole.y = whole.y + kHalfPixel - uncut.whole.height / 2;
   for (Point* place : {&travel.origin, &fit.misfit_from}) *place = motion.apply(*place);
   return true;
 }
@@ -177,6 +185,31 @@ bool TrackHypothesis::expected_in(Size frame) const {
          b.bottom() < frame.height;
 }
 
+void TrackHypothesis::restore_whole() {
+  const TrackParameters& q = *parameters;
+  if (uncut.leaving) {
+    const bool known = uncut.whole.area() > 0;
+    w.value = std::log(known ? uncut.whole.width : uncut.width);
+    h.value = std::log(known ? uncut.whole.height : uncut.height);
+    if (known) {
+      x.position = centre(uncut.whole).x + x.velocity * uncut.since;
+      y.position = centre(uncut.whole).y + y.velocity * uncut.since;
+    }
+  }
+  for (MovingValue* a : {&x, &y}) {
+    a->vv = std::min(a->vv, square(q.off_screen_speed * size()));
+    a->pv = 0;
+  }
+}
+
+void TrackHypothesis::find_whole(const Box& seen) {
+  const Box b = box();
+  uncut.whole = {b.x + compare_extents(b.x, b.right(), seen.x, seen.right(), *parameters).distance,
+                 b.y + compare_extents(b.y, b.bottom(), seen.y, seen.bottom(), *parameters).distance, b.width,
+                 b.height};
+  uncut.since = 0;
+}
+
 double TrackHypothesis::distance(const Box& seen, Size frame) const {
   const TrackParameters& q = *parameters;
   const bool returns = is(TrackPhase::off_screen);
@@ -186,9 +219,8 @@ double TrackHypothesis::distance(const Box& seen, Size frame) const {
   const Residual ry = compare_extents(b.y, b.bottom(), seen.y, seen.bottom(), q);
   const double noise = square(q.gate_noise * s);
   const double d2 = square(rx.distance) / (x.pp + noise) + square(ry.distance) / (y.pp + noise);
-  const double gate = returns                                    ? q.off_screen_gate
-                      : seen.area() < q.fragment_area * b.area() ? q.fragment_gate
-                                                                 : q.gate;
+  const bool fragment = !returns && seen.area() < q.fragment_area * b.area();
+  const double gate = fragment ? q.fragment_gate : q.gate;
   if (d2 > square(gate)) return -1;
   const double sizes = std::abs(std::log(seen.width / b.width)) + std::abs(std::log(seen.height / b.height));
   if (sizes > 2 * std::log(q.largest_ratio)) return -1;

@@ -88,6 +88,8 @@ struct TrackHypothesis {
     double width = 0, height = 0;  // the largest extent so far, frame pixels
     Point velocity;                // frame pixels a second, when last seen so
     bool leaving = false;          // the picture's edge cut it when last seen
+    Box whole;                     // its box when last seen so, carried with the scene; no area: never yet
+    double since = 0;              // s since then
   };
   // How long regions have had its extent, and since when the last ones have had another.
   struct Fit {
@@ -166,6 +168,12 @@ struct TrackHypothesis {
   void predict_off_screen(double seconds, const CameraOrientation& camera);
   // All of an off-screen track should be in the picture.
   bool expected_in(Size frame) const;
+
+  // As it leaves the picture: the extent that it had when last seen whole, the place where it should be by now, and a
+  // velocity that is no less certain than a walker's.
+  void restore_whole();
+  // As it comes back: the region shows all or a part of it.
+  void find_whole(const Box& seen);
 
   // Cost of a region: 0 fits perfectly; negative: outside the validation gate.
   double distance(const Box& seen, Size frame) const;

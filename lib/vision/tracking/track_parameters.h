@@ -33,9 +33,13 @@ struct TrackParameters {
   double stopped_uncertainty = 0.5;  // S, the most that this may add up to
   double coast_brake = 1.0;          // s, time constant in which a coasted track slows down
   double off_screen_brake = 3.0;     // s, the same while the track is off-screen
-  double fragment_brake = 0.4;       // s, the same when only a fragment of the object moves
-  double confidence_time = 0.5;      // s, time constant of the confidence
-  double misfit_confidence = 0.7;    // factor on the confidence of a region of another extent
+  // Off-screen: S/s, the largest standard deviation of its velocity as it leaves, and S^2/s^3, how that grows. While a moving
+  // camera follows him a walker's velocity is less certain than he is free to change it. swept: docs/quality.md, .1 to .4
+  // and .02 to .25. Guard: the IDF1 of bench-moving_window.
+  double off_screen_speed = 0.3, off_screen_acceleration = 0.05;
+  double fragment_brake = 0.4;     // s, the same when only a fragment of the object moves
+  double confidence_time = 0.5;    // s, time constant of the confidence
+  double misfit_confidence = 0.7;  // factor on the confidence of a region of another extent
 
   // Extents that agree, seen / expected.
   double same_extent_least = 0.65, same_extent_most = 1.5;
@@ -45,14 +49,13 @@ struct TrackParameters {
   double stride = 0.6;
 
   // Validation gate and pair cost.
-  double gate_noise = 0.15;      // S that a place may be wrong by, beyond the filter's own variance
-  double gate = 4.0;             // standard deviations
-  double off_screen_gate = 3.0;  // standard deviations; narrower, as other objects may have come meanwhile
-  double fragment_area = 0.2;    // of the track's area: a smaller region may be a fragment of it,
-  double fragment_gate = 1.5;    // standard deviations, and lies where the track is expected
-  double largest_ratio = 10.0;   // of the extents, both axes together: beyond it another object
-  double size_cost = 0.5;        // per unit of the logarithm
-  double gate_cost = 0.1;        // per standard deviation
+  double gate_noise = 0.15;     // S that a place may be wrong by, beyond the filter's own variance
+  double gate = 4.0;            // standard deviations
+  double fragment_area = 0.2;   // of the track's area: a smaller region may be a fragment of it,
+  double fragment_gate = 1.5;   // standard deviations, and lies where the track is expected
+  double largest_ratio = 10.0;  // of the extents, both axes together: beyond it another object
+  double size_cost = 0.5;       // per unit of the logarithm
+  double gate_cost = 0.1;       // per standard deviation
 
   // Picture's edge.
   double border = 0.1;         // S, distance that still counts as at the edge
