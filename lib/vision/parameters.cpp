@@ -142,7 +142,6 @@ void name(Numbers n, TrackParameters& p) {
          N(coast_brake),
          N(off_screen_brake),
          N(off_screen_speed),
-         N(off_screen_acceleration),
          N(fragment_brake),
          N(confidence_time),
          N(misfit_confidence),

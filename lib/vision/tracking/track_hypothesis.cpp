@@ -85,9 +85,7 @@ bool TrackHypothesis::predict(double seconds, bool camera_moves) {
       a->pp = std::min(a->pp + square(q.stopped_wander * s) * seconds,
                        std::max(square(q.stopped_uncertainty * s), a->pp));
   } else {
-    const double acceleration = is(TrackPhase::off_screen) ? q.off_screen_acceleration
-                                : camera_moves             ? q.panned_acceleration
-                                                           : q.acceleration;
+    const double acceleration = camera_moves ? q.panned_acceleration : q.acceleration;
     const double faster = std::max(1.0, speed() / (q.fast * s));
     for (MovingValue* a : {&x, &y}) a->predict(seconds, acceleration * square(faster * s));
   }

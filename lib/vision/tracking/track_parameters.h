@@ -33,10 +33,10 @@ struct TrackParameters {
   double stopped_uncertainty = 0.5;  // S, the most that this may add up to
   double coast_brake = 1.0;          // s, time constant in which a coasted track slows down
   double off_screen_brake = 3.0;     // s, the same while the track is off-screen
-  // Off-screen: S/s, the largest standard deviation of its velocity as it leaves, and S^2/s^3, how that grows. While a moving
-  // camera follows him a walker's velocity is less certain than he is free to change it. swept: docs/quality.md, .1 to .4
-  // and .02 to .25. Guard: the IDF1 of bench-moving_window.
-  double off_screen_speed = 0.3, off_screen_acceleration = 0.05;
+  // S/s, standard deviation of its velocity as it goes off-screen, at most: while a moving camera follows him, a walker's
+  // velocity is less certain than he is free to change it. swept: docs/quality.md, .1 to 1. Guard: the IDF1 of
+  // bench-moving_window.
+  double off_screen_speed = 0.3;
   double fragment_brake = 0.4;     // s, the same when only a fragment of the object moves
   double confidence_time = 0.5;    // s, time constant of the confidence
   double misfit_confidence = 0.7;  // factor on the confidence of a region of another extent
