@@ -45,8 +45,8 @@ struct TrackParameters {
   double same_extent_least = 0.65, same_extent_most = 1.5;
   // Heights. A region that only this track has, as high as the track, wider than it and narrower than this, is of the same
   // extent: a walker in mid-stride. Narrower again it is so by same_extent_least only: half of a person dissolves sooner
-  // than a stride ends. derived: a stride is .43 of the height, a foot .15. swept: docs/quality.md, 0 to .75.
-  double stride = 0.6;
+  // than a stride ends. derived: a stride is .43 of the height, a foot .15. swept: docs/quality.md, 0 to .8.
+  double stride = 0.65;
 
   // Validation gate and pair cost.
   double gate_noise = 0.15;     // S that a place may be wrong by, beyond the filter's own variance
