@@ -160,6 +160,7 @@ void name(Numbers n, TrackParameters& p) {
          N(cut_margin),
          N(cut_most),
          N(leaving),
+         N(whole_lasts),
          N(end_speed),
          N(upright),
          N(camera_still),

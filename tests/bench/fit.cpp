@@ -32,18 +32,18 @@ namespace {
 constexpr double kHiddenFor = 3;  // s, issue: who was hidden for so long is the same
 constexpr double kAround = 1;     // s before and after it in which the person must be matched to be judged
 
-constexpr double kBias = 0.05;  // the most that is asked
-// Whether the bias is reached; the share of hidden people that must be kept (all are wanted), 0: none is promised.
+// The largest bias, .05 where the figure allows it; the share of hidden people that must be kept (all are wanted), 0: none is
+// promised.
 struct PromisedFit {
   const char* name;
-  bool fits;
+  double bias;
   double kept;
 };
-constexpr PromisedFit kPromised[] = {{"PETS09-S2L1", true, 0.8},
-                                     {"TUD-Campus", true, 0},
-                                     {"TUD-Stadtmitte", true, 0},
-                                     // -4.7 % on Debian 12, -6.1 % on Debian 13: 63 boxes
-                                     {"davis_tennis", false, 0}};
+constexpr PromisedFit kPromised[] = {{"PETS09-S2L1", 0.05, 0.8},
+                                     {"TUD-Campus", 0.05, 0},
+                                     {"TUD-Stadtmitte", 0.05, 0},
+                                     // 63 boxes: -4.7 % on Debian 12, -6.1 % on Debian 13
+                                     {"davis_tennis", 0.07, 0}};
 
 std::string line_of(const std::string& source, const std::string& detector) {
   return source + " ! " + detector + " ! appsink name=out sync=false";
@@ -183,7 +183,7 @@ bool measure(const PeopleSequence& s, const std::string& detector, Asked& asked)
   const double worst = std::max({std::abs(width), std::abs(foot), std::abs(head)});
   const PromisedFit& promised =
       *std::ranges::find(kPromised, s.name, [](const PromisedFit& p) { return std::string(p.name); });
-  std::printf("%s", asked.at_most("bias on " + s.name, worst, kBias, promised.fits).c_str());
+  std::printf("%s", asked.at_most("bias on " + s.name, worst, promised.bias).c_str());
   if (hidden.asked > 0)
     std::printf("%s", asked
                           .at_least("people hidden on " + s.name + " who are kept",

@@ -252,11 +252,23 @@ START_TEST(a_track_that_leaves_keeps_its_direction_and_what_was_not_cut) {
     ck_assert_double_eq_tol(t.x.vv, 33 * 33, 1e-9);
     ck_assert_double_eq(t.x.pv, 0);
   }
-  TrackHypothesis never = track(Coasted{});  // never seen whole: of the largest extent so far
-  never.uncut = {44, 110, {}, true, {}, 0};
-  LifeCycle::leave(never, camera());
-  ck_assert_double_eq_tol(never.width(), 44, 1e-9);
-  ck_assert_double_eq_tol(never.x.position, 320, 1e-9);
+  // Never seen whole, it has the largest extent so far; what was seen so more than two seconds ago may have gone anywhere.
+  for (const Box& whole : {Box{}, Box{283, 191, 44, 110}}) {
+    TrackHypothesis t = track(Coasted{});
+    t.uncut = {88, 220, {30, -12}, true, whole, 2.1};
+    LifeCycle::leave(t, camera());
+    ck_assert_double_eq_tol(t.width(), whole.area() > 0 ? 44 : 88, 1e-9);
+    ck_assert_double_eq_tol(t.x.position, 320, 1e-9);
+  }
+}
+END_TEST
+
+START_TEST(a_stopped_track_whose_place_is_in_view_again_is_whole_there) {
+  TrackHypothesis t = track(OffScreen{{}, 1, true, true, 0});
+  t.uncut.since = 5;
+  LifeCycle::resume_stop(t);
+  ck_assert_double_eq(t.uncut.since, 0);
+  ck_assert_double_eq_tol(t.uncut.whole.x, 300, 1e-9);
 }
 END_TEST
 
@@ -267,8 +279,11 @@ START_TEST(a_track_that_comes_back_is_what_it_was_and_takes_the_place_of_its_reg
     ck_assert(t.is(stopped ? TrackPhase::stopped : TrackPhase::coasted));
     ck_assert_double_eq_tol(t.box().x, 100, 1e-9);
     ck_assert_double_eq_tol(t.box().bottom(), 130, 1e-9);
-    // He is 40 x 100: the region shows a part of him.
-    ck_assert_double_eq_tol(t.uncut.whole.width, 40, 1e-9);
+    // He is 40 x 100, and the region, of the same extent, has its middle at (115, 90).
+    const Box& whole = t.uncut.whole;
+    ck_assert(std::abs(whole.width - 40) < 1e-9 && std::abs(whole.height - 100) < 1e-9);
+    ck_assert(std::abs(whole.x - 95) < 1e-9 && std::abs(whole.y - 40) < 1e-9);
+    ck_assert_double_eq(t.uncut.since, 0);
     LifeCycle::see(t);
     ck_assert(t.is(TrackPhase::confirmed));
   }
@@ -433,6 +448,7 @@ int main() {
        a_stopped_track_is_lost_after_hold_stopped_or_where_it_has_left_by_the_edge,
        a_known_object_from_which_the_camera_turns_away_is_off_screen,
        a_track_that_leaves_keeps_its_direction_and_what_was_not_cut,
+       a_stopped_track_whose_place_is_in_view_again_is_whole_there,
        a_track_that_comes_back_is_what_it_was_and_takes_the_place_of_its_region,
        an_off_screen_track_is_lost_after_its_time_or_where_it_is_expected,
        tracks_in_view_are_published_while_their_place_is_certain, a_blob_that_came_apart_ends,

@@ -23,7 +23,7 @@ TrackHypothesis walker(double x, double y) {
   TrackHypothesis track = TrackHypothesis::first_seen({{x - 20, y - 50, 40, 100}, 2000, 0.9, 1});
   track.uncut.width = 44;
   track.uncut.height = 110;
-  track.uncut.whole = {x - 22, y - 55, 44, 110};
+  track.uncut.whole = {x - 22 + 30, y - 55 - 10, 44, 110};
   track.x.velocity = track.uncut.velocity.x = 30;
   track.y.velocity = track.uncut.velocity.y = -12;
   track.x.pv = 7;
@@ -61,9 +61,10 @@ START_TEST(a_zoom_scales_all_of_its_lengths) {
   const double grain = after.x.pp / 2.25 - before.x.pp;  // a pixel of the analysed picture, whatever that is
   ck_assert_double_gt(grain, 0);
   check_scaled(before, after, 1.5, grain, 1e-9);
-  // The box as it was last seen whole stays around the same place of the scene.
-  ck_assert_double_eq_tol(after.uncut.whole.x + after.uncut.whole.width / 2, after.x.position, 1e-9);
-  ck_assert_double_eq_tol(after.uncut.whole.bottom() - after.uncut.whole.height / 2, after.y.position, 1e-9);
+  // The box as it was last seen whole stays around its place of the scene, (30, -10) beside the track.
+  const Box& whole = after.uncut.whole;
+  ck_assert_double_eq_tol(whole.x + whole.width / 2 - after.x.position, 45, 1e-9);
+  ck_assert_double_eq_tol(whole.bottom() - whole.height / 2 - after.y.position, -15, 1e-9);
 }
 END_TEST
 
@@ -74,6 +75,31 @@ START_TEST(a_camera_that_rolls_turns_the_velocity) {
   ck_assert_double_eq_tol(track.y.velocity, 30, 1e-9);
   ck_assert_double_eq_tol(track.uncut.velocity.x, 12, 1e-9);
   ck_assert_double_eq_tol(track.uncut.velocity.y, 30, 1e-9);
+}
+END_TEST
+
+// Seen whole: the track's own region, of its extent, away from the picture's edge, also of one that stands at the edge.
+START_TEST(what_the_edge_cuts_or_another_shares_is_not_seen_whole) {
+  const auto see = [](double x, double width, bool alone, bool stands) {
+    TrackHypothesis track = walker(200, 240);
+    track.x.position = x;
+    if (stands) {
+      track.slow = 1;
+      track.appearance.place_change = 0;
+    }
+    ck_assert(track.predict(0.1));
+    const double left = std::max(0.0, x - width / 2);
+    track.correct({{left, 190, x + width / 2 - left, 100}, 2000, 0.9, 1}, alone, 0.1, kFrame);
+    return track.uncut;
+  };
+  const TrackHypothesis::Uncut all = see(200, 40, true, false);
+  ck_assert_double_eq(all.since, 0);
+  ck_assert_double_eq_tol(all.whole.width, 40, 1);
+  ck_assert_double_eq_tol(all.whole.x, 180, 1);
+  ck_assert_double_eq_tol(see(200, 40, false, false).since, 0.1, 1e-9);
+  ck_assert_double_eq_tol(see(200, 15, true, false).since, 0.1, 1e-9);  // of another extent
+  ck_assert_double_eq_tol(see(14, 40, true, false).since, 0.1, 1e-9);
+  ck_assert_double_eq_tol(see(14, 40, true, true).since, 0.1, 1e-9);
 }
 END_TEST
 
@@ -118,6 +144,8 @@ START_TEST(towards_the_picture_s_middle_an_off_screen_track_shrinks_as_a_pinhole
   const TrackHypothesis before = track;
   track.predict_off_screen(0, {lens, 40 * kDegree, 0});
   ck_assert_double_eq_tol(track.x.position, 320, 1);
+  ck_assert_double_eq_tol(track.uncut.whole.x - before.uncut.whole.x, track.x.position - before.x.position,
+                          1e-9);
   check_scaled(before, track, scale, 0, 1e-4);
   track.predict_off_screen(0, {lens, 0, 0});
   check_scaled(before, track, 1, 0, 1e-9);
@@ -362,7 +390,8 @@ int main() {
        the_velocity_of_what_is_faster_than_a_jogger_is_less_certain,
        after_a_leap_the_velocity_is_that_of_the_leap, a_track_becomes_as_wide_as_somebody_in_mid_stride,
        a_region_that_fits_exactly_is_at_no_distance, each_transition_leads_to_its_state,
-       a_zoom_scales_all_of_its_lengths, a_camera_that_rolls_turns_the_velocity,
+       a_zoom_scales_all_of_its_lengths, what_the_edge_cuts_or_another_shares_is_not_seen_whole,
+       a_camera_that_rolls_turns_the_velocity,
        a_fragment_replaces_the_track_if_it_leaves_its_place_in_the_scene,
        towards_the_picture_s_middle_an_off_screen_track_shrinks_as_a_pinhole_projects_it,
        a_person_s_own_region_replaces_a_group_s_extent_at_once_and_a_person_s_after_a_while,

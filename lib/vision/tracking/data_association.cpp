@@ -67,6 +67,12 @@ bool DataAssociation::too_fast(const TrackHypothesis& t, double moved) const {
          moved > frame_.maximum_speed * (frame_.seconds + t.unseen) + parameters_.speed_slack * t.size();
 }
 
+DataAssociation::SameExtents DataAssociation::same_extents(const TrackHypothesis& t, const Box& seen) const {
+  const Box expected = turn_of(t) == Turn::off_screen ? t.visible(frame_.size) : t.box();
+  return {compare_extents(expected.x, expected.right(), seen.x, seen.right(), *t.parameters).same_extent,
+          compare_extents(expected.y, expected.bottom(), seen.y, seen.bottom(), *t.parameters).same_extent};
+}
+
 double DataAssociation::pair_cost(const TrackHypothesis& t, std::size_t j) const {
   const Parameters& q = parameters_;
   const Region& region = regions_[j];
@@ -76,26 +82,23 @@ double DataAssociation::pair_cost(const TrackHypothesis& t, std::size_t j) const
   if (distance < 0) return Assignment::kForbidden;
   if (returns && region.box.area() > q.returned_area * t.box().area()) return Assignment::kForbidden;
   if (too_fast(t, distance_between(t, region.box))) return Assignment::kForbidden;
-  const double appearance = appearance_cost(t, j);
+  // Only a region of the track's own extent shows all of it and nothing else. Of a track that comes back the picture's edge
+  // may hide a part; a piece of another width and height may be anybody's.
+  const SameExtents same = same_extents(t, region.box);
+  if (returns && !same.width && !same.height) return Assignment::kForbidden;
+  const double appearance = returns || (same.width && same.height) ? appearance_cost(t, j) : 0;
   if (appearance < 0) return Assignment::kForbidden;
   const double cost = distance + appearance;
   if (cost <= q.worst || !returns) return std::min(cost, q.worst);
-  // Of several who may have come back the likeliest has.
+  // Beyond `worst` the order of those who may have come back is kept: the nearest has.
   return q.unmatched - (q.unmatched - q.worst) * q.worst / cost;
 }
 
-// Cost of a difference in appearance; negative: another object. Only a region of the track's own extent shows all of it
-// and nothing else: no other is compared, but those that the picture's edge cuts as a track comes back.
+// Cost of a difference in appearance; negative: another object.
 double DataAssociation::appearance_cost(const TrackHypothesis& t, std::size_t j) const {
   const Parameters& q = parameters_;
+  if (!t.has_appearance()) return 0;
   const bool returns = turn_of(t) == Turn::off_screen;
-  const Box expected = returns ? t.visible(frame_.size) : t.box(), &seen = regions_[j].box;
-  const bool wide =
-      compare_extents(expected.x, expected.right(), seen.x, seen.right(), *t.parameters).same_extent;
-  const bool high =
-      compare_extents(expected.y, expected.bottom(), seen.y, seen.bottom(), *t.parameters).same_extent;
-  if (returns && !wide && !high) return -1;
-  if (!t.has_appearance() || (!returns && !(wide && high))) return 0;
   const double difference = appearance_distance(t.appearance.model, appearances_->of(j));
   if (difference > (returns ? q.off_screen_change : t.appearance.change + q.sudden_change)) return -1;
   return q.appearance_cost * std::max(0.0, difference - q.usual_change);
@@ -156,12 +159,9 @@ void DataAssociation::follow_leap() {
   }
   if (track == tracks_.size() || region == regions_.size()) return;
   const TrackHypothesis& t = tracks_[track];
-  const Box expected = t.box(), &seen = regions_[region].box;
-  const double moved = distance_between(t, seen);
-  if (moved > parameters_.leap * t.size() || too_fast(t, moved) ||
-      !compare_extents(expected.x, expected.right(), seen.x, seen.right(), *t.parameters).same_extent ||
-      !compare_extents(expected.y, expected.bottom(), seen.y, seen.bottom(), *t.parameters).same_extent)
-    return;
+  const double moved = distance_between(t, regions_[region].box);
+  const SameExtents same = same_extents(t, regions_[region].box);
+  if (moved > parameters_.leap * t.size() || too_fast(t, moved) || !same.width || !same.height) return;
   matches_[track].region = static_cast<int>(region);
   matches_[track].leapt = true;
   owner_[region] = static_cast<int>(track);

@@ -21,9 +21,10 @@ class DataAssociation {
   struct Parameters {
     // Cost of a pair; TrackHypothesis::distance() is about 0 to 2.
     double unmatched = 2;  // cost of a track without region
-    double worst = 1.99;   // the most that a pair costs: below `unmatched`, or two tracks would rather share
-                           // two regions that fit neither of them
-    double shared = 1;     // cost of a track that stays in a blob of several
+    // The most that a pair costs, but for a track that comes back: below `unmatched`, or two tracks would rather share two
+    // regions that fit neither of them.
+    double worst = 1.99;
+    double shared = 1;         // cost of a track that stays in a blob of several
     double returned_area = 2;  // times the area when it left that a returning object has at most
     double speed_slack = 0.5;  // S beyond maximum-speed. derived: a region's centre jumps by half an object
 
@@ -36,7 +37,8 @@ class DataAssociation {
     double usual_change = 0.15;    // costs nothing
     double appearance_cost = 3.0;  // per unit beyond it
     double sudden_change = 0.45;  // more than the last one by this: another object (shade comes step by step)
-    double off_screen_change = 0.4;  // the most for a track that comes back into the picture
+    // The most for a track that comes back into the picture. swept: docs/quality.md, .35 to .45. Guard: bench-moving_window.
+    double off_screen_change = 0.4;
 
     // Blobs of several.
     double larger = 1.3;            // times the area of a track: a region that may hold others
@@ -104,10 +106,14 @@ class DataAssociation {
  private:
   enum class Turn { in_view, off_screen, tentative };
   static Turn turn_of(const TrackHypothesis& track);
+  struct SameExtents {
+    bool width = false, height = false;
+  };
 
   void assign(Turn turn);
   double pair_cost(const TrackHypothesis& track, std::size_t region) const;
   double appearance_cost(const TrackHypothesis& track, std::size_t region) const;
+  SameExtents same_extents(const TrackHypothesis& track, const Box& seen) const;
   bool may_hold(const Region& region, const TrackHypothesis& track) const;
   bool too_fast(const TrackHypothesis& track, double moved) const;
   void follow_leap();

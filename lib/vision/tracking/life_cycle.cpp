@@ -44,12 +44,13 @@ void LifeCycle::come_back(TrackHypothesis& t, const Box& seen) {
     t.life = Stopped{};
   else
     t.life = Coasted{};
-  t.find_whole(seen);
+  t.estimate_whole(seen);
   t.adopt(seen);
 }
 
 void LifeCycle::resume_stop(TrackHypothesis& t) {
   t.life = Stopped{std::get<OffScreen>(t.life).absent};
+  t.estimate_whole(t.box());
 }
 
 void LifeCycle::lose(TrackHypothesis& t) {

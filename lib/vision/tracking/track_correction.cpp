@@ -37,7 +37,7 @@ void TrackHypothesis::correct(const Region& region, bool alone, double seconds, 
   take_kind(region.kind, alone, how.fits, seconds);
   if (!alone && !match.occluded && !how.stays) shrink_into(seen);
   if (!how.cut()) uncut.velocity = {x.velocity, y.velocity};
-  if (!how.cut() && alone && fit.misfit == 0) {
+  if (!how.at_edge && alone && fit.misfit == 0) {
     uncut.whole = box();
     uncut.since = 0;
   }
@@ -75,9 +75,12 @@ TrackHypothesis::Comparison TrackHypothesis::compare(const Box& seen, bool alone
   // Where the edge cuts a region off it changes because the object comes or goes, unless the object is seen to stand
   // there and only its moving part became smaller.
   c.stays = stays();
+  const bool at_side = is_cut(seen.x, seen.right(), uncut.width, frame.width);
+  const bool at_end = is_cut(seen.y, seen.bottom(), uncut.height, frame.height);
+  c.at_edge = at_side || at_end;
   if (!c.stays) {
-    c.cut_x = is_cut(seen.x, seen.right(), uncut.width, frame.width);
-    c.cut_y = is_cut(seen.y, seen.bottom(), uncut.height, frame.height);
+    c.cut_x = at_side;
+    c.cut_y = at_end;
     return c;
   }
   const bool fragment = !c.fits && c.smaller;

@@ -171,6 +171,8 @@ void TrackHypothesis::predict_off_screen(double seconds, const CameraOrientation
   y.position = seen ? seen->y : before.y;
   travel.origin.x += x.position - before.x;
   travel.origin.y += y.position - before.y;
+  uncut.whole.x += x.position - before.x;
+  uncut.whole.y += y.position - before.y;
   const double now = camera.magnification(data.direction), scale = now / data.magnification;
   data.magnification = now;
   for (double* v : {&x.velocity, &y.velocity, &uncut.velocity.x, &uncut.velocity.y}) *v *= scale;
@@ -185,14 +187,15 @@ bool TrackHypothesis::expected_in(Size frame) const {
 
 void TrackHypothesis::restore_whole() {
   const TrackParameters& q = *parameters;
+  const Point whole = centre(uncut.whole);
+  const bool known = uncut.whole.area() > 0 && std::isfinite(whole.x + whole.y);
   if (uncut.leaving) {
-    const bool known = uncut.whole.area() > 0;
     w.value = std::log(known ? uncut.whole.width : uncut.width);
     h.value = std::log(known ? uncut.whole.height : uncut.height);
-    if (known) {
-      x.position = centre(uncut.whole).x + x.velocity * uncut.since;
-      y.position = centre(uncut.whole).y + y.velocity * uncut.since;
-    }
+  }
+  if (uncut.leaving && known && uncut.since < q.whole_lasts) {
+    x.position = whole.x + x.velocity * uncut.since;
+    y.position = whole.y + y.velocity * uncut.since;
   }
   for (MovingValue* a : {&x, &y}) {
     a->vv = std::min(a->vv, square(q.off_screen_speed * size()));
@@ -200,7 +203,7 @@ void TrackHypothesis::restore_whole() {
   }
 }
 
-void TrackHypothesis::find_whole(const Box& seen) {
+void TrackHypothesis::estimate_whole(const Box& seen) {
   const Box b = box();
   uncut.whole = {b.x + compare_extents(b.x, b.right(), seen.x, seen.right(), *parameters).distance,
                  b.y + compare_extents(b.y, b.bottom(), seen.y, seen.bottom(), *parameters).distance, b.width,

@@ -88,8 +88,9 @@ struct TrackHypothesis {
     double width = 0, height = 0;  // the largest extent so far, frame pixels
     Point velocity;                // frame pixels a second, when last seen so
     bool leaving = false;          // the picture's edge cut it when last seen
-    Box whole;                     // its box when last seen so, carried with the scene; no area: never yet
-    double since = 0;              // s since then
+    // Its box when last seen so, or as estimated when it came back, carried with the scene; no area: not yet.
+    Box whole;
+    double since = 0;  // s since then
   };
   // How long regions have had its extent, and since when the last ones have had another.
   struct Fit {
@@ -169,11 +170,11 @@ struct TrackHypothesis {
   // All of an off-screen track should be in the picture.
   bool expected_in(Size frame) const;
 
-  // As it leaves the picture: the extent that it had when last seen whole, the place where it should be by now, and a
-  // velocity that is no less certain than a walker's.
+  // As it leaves the picture, cut by its edge: restores the extent that it had when last seen whole and, where that was a
+  // moment ago, the place where it should be by now. Limits the velocity's variance.
   void restore_whole();
-  // As it comes back: the region shows all or a part of it.
-  void find_whole(const Box& seen);
+  // As it comes back: takes the region for all or a part of the expected box, and that box for the whole one.
+  void estimate_whole(const Box& seen);
 
   // Cost of a region: 0 fits perfectly; negative: outside the validation gate.
   double distance(const Box& seen, Size frame) const;
@@ -210,7 +211,8 @@ struct TrackHypothesis {
     bool smaller = false;                     // in area
     bool within_x = false, within_y = false;  // it lies in the expected box
     bool cut_x = false, cut_y = false;        // by the picture's edge: it changes as the object comes or goes
-    bool stays = false;                       // the object is seen to stay where it stood
+    bool at_edge = false;  // the picture's edge cuts it, whether it comes, goes or stands there
+    bool stays = false;    // the object is seen to stay where it stood
     bool cut() const { return cut_x || cut_y; }
   };
 

@@ -33,9 +33,8 @@ struct TrackParameters {
   double stopped_uncertainty = 0.5;  // S, the most that this may add up to
   double coast_brake = 1.0;          // s, time constant in which a coasted track slows down
   double off_screen_brake = 3.0;     // s, the same while the track is off-screen
-  // S/s, standard deviation of its velocity as it goes off-screen, at most: while a moving camera follows him, a walker's
-  // velocity is less certain than he is free to change it. swept: docs/quality.md, .1 to 1. Guard: the IDF1 of
-  // bench-moving_window.
+  // S/s, the largest standard deviation of its velocity as it goes off-screen: the filter's is that of what a moving camera
+  // follows. swept: docs/quality.md, .1 to 1. Guard: the closed loop of bench-in_window.
   double off_screen_speed = 0.3;
   double fragment_brake = 0.4;     // s, the same when only a fragment of the object moves
   double confidence_time = 0.5;    // s, time constant of the confidence
@@ -62,7 +61,9 @@ struct TrackParameters {
   double least_visible = 0.1;  // of each extent; a smaller rest of the box is not worth cutting to
   double cut_margin = 0.01;    // of the picture's side: a region this close to the edge is cut by it,
   double cut_most = 0.7;       // of the side: unless the object fills the picture from edge to edge
-  double leaving = 0.7;        // of the largest extent so far: a cut region below it is leaving the picture
+  double leaving = 0.7;        // of the largest extent so far: a cut region below it is leaving the picture,
+  // s, and its place is where it should be by now if it was seen whole since. swept: docs/quality.md, .5 to 10.
+  double whole_lasts = 2.0;
 
   // Growth: what shows that an object moves although its centre does not.
   double end_speed = 1.0;  // S/s of an end of the box; a faster one reveals more of a partly seen object
