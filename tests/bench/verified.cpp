@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kRunsOfMean = 8;
-// Switches that fewer runs may have beyond the mean that is asked: of eight, 23 to 29 were seen around a mean of 24.9.
+// Switches that fewer runs may have beyond the mean that is asked: of eight, 23 to 29 were seen around a mean of 24.
 constexpr double kMoreSwitches = 5;
 
 // Of the mean, at least; of the switches at most.

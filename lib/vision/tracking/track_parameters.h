@@ -34,7 +34,7 @@ struct TrackParameters {
   double coast_brake = 1.0;          // s, time constant in which a coasted track slows down
   double off_screen_brake = 3.0;     // s, the same while the track is off-screen
   // S/s, the largest standard deviation of its velocity as it goes off-screen: the filter's is that of what a moving camera
-  // follows. swept: docs/quality.md, .1 to 1. Guard: the closed loop of bench-in_window.
+  // follows. swept: docs/quality.md, .1 to 100. Guard: the IDF1 of bench-moving_window.
   double off_screen_speed = 0.3;
   double fragment_brake = 0.4;     // s, the same when only a fragment of the object moves
   double confidence_time = 0.5;    // s, time constant of the confidence
@@ -44,7 +44,7 @@ struct TrackParameters {
   double same_extent_least = 0.65, same_extent_most = 1.5;
   // Heights. A region that only this track has, as high as the track, wider than it and narrower than this, is of the same
   // extent: a walker in mid-stride. Narrower again it is so by same_extent_least only: half of a person dissolves sooner
-  // than a stride ends. derived: a stride is .43 of the height, a foot .15. swept: docs/quality.md, 0 to .8.
+  // than a stride ends. derived: a stride is .43 of the height, a foot .15. swept: docs/quality.md, 0 to .75.
   double stride = 0.65;
 
   // Validation gate and pair cost.
