@@ -20,8 +20,9 @@ namespace {
 constexpr int kUnit = 64;         // of the logarithms
 constexpr int kMostCells = 8192;  // in a grid with its sums; both packed sums stay below 65536
 
+// Halves away from 0. Inline, unlike std::lround().
 int whole(double value) {
-  return static_cast<int>(std::lround(value));
+  return static_cast<int>(value + (value < 0 ? -0.5 : 0.5));
 }
 
 }  // namespace
@@ -148,6 +149,14 @@ void PeopleFinder::mark_explained(const Candidate& c) {
   }
 }
 
+// What a cell adds to the sums, by its flags.
+constexpr std::array<std::uint32_t, 2 * kCellExplained> kCarried = [] {
+  std::array<std::uint32_t, 2 * kCellExplained> carried{};
+  for (std::uint32_t cell = 0; cell < kCellExplained; ++cell)
+    carried[cell] = (cell & kCellMoving ? kMoving : 0) + (cell & kCellCounted ? kCounted : 0);
+  return carried;
+}();
+
 // After every change of what is explained in the rows from this one on.
 void PeopleFinder::add_up(int from) {
   const std::size_t stride = static_cast<std::size_t>(columns_) + 1;
@@ -158,10 +167,7 @@ void PeopleFinder::add_up(int from) {
     const std::uint8_t* row = cells(r);
     std::uint32_t sum = below[0] = 0;
     for (int c = 0; c < columns_; ++c) {
-      const std::uint32_t cell = row[c];
-      const std::uint32_t carried =
-          (cell & kCellMoving) * kMoving + (cell & kCellCounted) / kCellCounted * kCounted;
-      sum += cell & kCellExplained ? 0 : carried;
+      sum += kCarried[row[c]];
       below[c + 1] = above[c + 1] + sum;
     }
   }
@@ -191,7 +197,14 @@ int PeopleFinder::score(int foot, int height, int first, int end) {
     band.reach = body[i].reach;
     add_band(band, first, end, scores_.data());
   }
-  return *std::max_element(scores_.begin() + first, scores_.begin() + end);
+  return highest(first, end);
+}
+
+// Of scores_; the compiler's vectors find it, which they do not in std::max_element().
+int PeopleFinder::highest(int first, int end) const {
+  int most = scores_[static_cast<std::size_t>(first)];
+  for (int x = first; x < end; ++x) most = std::max(most, scores_[static_cast<std::size_t>(x)]);
+  return most;
 }
 
 // Replaces `best` where a person of this scale whose left edge lies in [from, to) and whose feet are at this row gains
@@ -215,20 +228,20 @@ void PeopleFinder::try_row(int foot, const Scale& scale, int from, int to, int a
   const auto before = [&](int x) { return sums(foot)[x] - sums(foot - h)[x]; };
   const int moving = static_cast<int>((before(end - 1 + reach) - before(first - reach)) & 0xffff);
   if (moving * dearest - cost <= least) return;
-  int highest = score(foot, h, first, end) - cost;
-  if (highest <= least) return;
+  int most = score(foot, h, first, end) - cost;
+  if (most <= least) return;
   const auto lost = [&](int x) {
     const int left = x - w / 2;
     return anchor >= 0 && left > anchor ? (moving_before(left) - moving_before(anchor)) * dearest : 0;
   };
   if (anchor >= 0) {
     for (int x = first; x < end; ++x) scores_[static_cast<std::size_t>(x)] -= lost(x);
-    highest = *std::max_element(scores_.begin() + first, scores_.begin() + end) - cost;
-    if (highest <= least) return;
+    most = highest(first, end) - cost;
+    if (most <= least) return;
   }
-  const auto at = std::find(scores_.begin() + first, scores_.begin() + end, highest + cost);
+  const auto at = std::find(scores_.begin() + first, scores_.begin() + end, most + cost);
   const int x = static_cast<int>(at - scores_.begin());
-  best = {x - w / 2, foot - h, x - w / 2 + w, foot, x, highest};
+  best = {x - w / 2, foot - h, x - w / 2 + w, foot, x, most};
 }
 
 // The best position for one more person whose left edge lies in [from, to). Score 0: none. The expected height is tried

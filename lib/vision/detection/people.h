@@ -138,6 +138,7 @@ class PeopleFinder {
   void try_row(int foot, const Scale& scale, int from, int to, int anchor, Candidate& best);
   Candidate best(int from, int to, int anchor);
   int score(int foot, int height, int first, int end);
+  int highest(int first, int end) const;
   double gain_a_pixel(const Candidate& candidate) const;
   int explain(bool from_the_left);
   void settle();
