@@ -14,7 +14,6 @@
 #include <map>
 #include <span>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "asked.h"
@@ -22,6 +21,7 @@
 #include "frames.h"
 #include "people_sequences.h"
 #include "support/data.h"
+#include "tracks.h"
 
 using namespace cerberus;
 using namespace cerberus::bench;
@@ -72,29 +72,6 @@ using Lives = std::map<int, std::vector<Seen>>;  // by person, in the order of t
 struct Fit {
   std::vector<double> width, foot, head;  // of the person's width, height, height; positive: wider, lower
 };
-
-// Index of the found box of each person, or -1: a person keeps his last track where the two overlap, as TrackScore has it, and
-// the others are paired by overlap, the largest first. `last`: that track of each person, brought up to date.
-std::vector<int> partners(std::span<const Person> truth, std::span<const Person> found,
-                          std::map<int, int>& last) {
-  std::vector<std::tuple<bool, double, std::size_t, std::size_t>> pairs;
-  for (std::size_t i = 0; i < truth.size(); ++i)
-    for (std::size_t j = 0; j < found.size(); ++j)
-      if (const double o = vision::intersection_over_union(truth[i].box, found[j].box); o >= 0.5) {
-        const auto before = last.find(truth[i].id);
-        pairs.emplace_back(before != last.end() && before->second == found[j].id, o, i, j);
-      }
-  std::sort(pairs.rbegin(), pairs.rend());
-  std::vector<int> partner(truth.size(), -1);
-  std::vector<bool> used(found.size());
-  for (const auto& [kept, overlap, i, j] : pairs) {
-    if (partner[i] >= 0 || used[j]) continue;
-    partner[i] = static_cast<int>(j);
-    used[j] = true;
-    last[truth[i].id] = found[j].id;
-  }
-  return partner;
-}
 
 // More than half of the box is covered by people whose feet are lower in the picture: they are nearer.
 bool covered(const Person& person, std::span<const Person> all) {
@@ -151,7 +128,7 @@ bool measure(const PeopleSequence& s, const std::string& detector, Asked& asked)
   const People truth = read_people(s.truth, 1e9);
   Fit fit;
   Lives lives;
-  std::map<int, int> last_track;
+  TrackScore pairs;  // a person keeps his last track where the two overlap
   double first = -1, last = 0;
   int frames = 0;
   if (!for_each_sample(line_of(s.source, detector), [&](GstSample* sample, int n) {
@@ -161,7 +138,7 @@ bool measure(const PeopleSequence& s, const std::string& detector, Asked& asked)
         const auto people = truth.find(n);
         if (people == truth.end()) return;
         const auto found = people_of(found_on(gst_sample_get_buffer(sample)));
-        const auto partner = partners(people->second, found, last_track);
+        const auto partner = pairs.add(people->second, found);
         const vision::Size size = size_of(sample);
         for (std::size_t i = 0; i < partner.size(); ++i) {
           const Person& p = people->second[i];

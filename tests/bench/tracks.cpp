@@ -11,7 +11,7 @@ constexpr double kLeastOverlap = 0.5;
 
 }  // namespace
 
-void TrackScore::add(std::span<const Person> truth, std::span<const Person> found) {
+std::span<const int> TrackScore::add(std::span<const Person> truth, std::span<const Person> found) {
   const std::size_t n = truth.size(), m = found.size();
   std::vector<double> cost(n * m, vision::Assignment::kForbidden);
   for (std::size_t i = 0; i < n; ++i)
@@ -37,6 +37,7 @@ void TrackScore::add(std::span<const Person> truth, std::span<const Person> foun
   hits_ += hits;
   missed_ += static_cast<double>(n) - hits;
   extra_ += static_cast<double>(m) - hits;
+  return partner;
 }
 
 double TrackScore::mota() const {

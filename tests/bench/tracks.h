@@ -16,8 +16,8 @@ namespace cerberus::bench {
 class TrackScore {
  public:
   // One frame. A person keeps the track of the frame before where the two still overlap; the others are paired for the
-  // largest total overlap.
-  void add(std::span<const Person> truth, std::span<const Person> found);
+  // largest total overlap. Returns the index of each person's found box, or -1; it lives until the next call.
+  std::span<const int> add(std::span<const Person> truth, std::span<const Person> found);
 
   // Misses, wrong boxes and changes of identity against the annotated boxes: 1 - (missed + extra + switches) / truth.
   double mota() const;

@@ -40,6 +40,14 @@ struct Picture {
   std::span<const Region> find(RegionFinder& finder, const Transform& motion = {}) {
     return finder.update(mask.view(), labels.view(), motion);
   }
+  // Where only this rectangle differs from the frame before.
+  std::span<const Region> find_changing(RegionFinder& finder, double left, double top, double right,
+                                        double bottom) {
+    Image<std::uint8_t> difference(kSize);
+    difference.fill_bytes(0);
+    tests::fill(difference.view(), left, top, right, bottom, 40);
+    return finder.update(mask.view(), {}, {}, {difference.view(), 30});
+  }
   long count() const {
     long n = 0;
     for (int y = 0; y < kSize.height; ++y)
@@ -279,10 +287,8 @@ START_TEST(who_has_walked_little_is_a_person_if_he_changes) {
     for (int k = 0; k < 3; ++k) {
       Picture picture;
       const Box walker = picture.person(100 + 2 * k, 200);
-      Image<std::uint8_t> difference(kSize);
-      difference.fill_bytes(0);
-      tests::fill(difference.view(), walker.x, walker.y, walker.x + columns, walker.bottom(), 40);
-      for (const Region& r : finder.update(picture.mask.view(), {}, {}, {difference.view(), 30}))
+      for (const Region& r :
+           picture.find_changing(finder, walker.x, walker.y, walker.x + columns, walker.bottom()))
         people += is_person_like(r);
     }
     ck_assert_int_eq(people, columns == 12 ? 1 : 0);
@@ -299,10 +305,8 @@ START_TEST(who_changes_is_the_same_body_after_his_head_was_hidden) {
       Picture picture;
       const Box walker = picture.person(100 + 2 * k, 200);
       if (k == 2) picture.fill(walker.x, walker.y, walker.right(), walker.y + 9);
-      Image<std::uint8_t> difference(kSize);
-      difference.fill_bytes(0);
-      tests::fill(difference.view(), walker.x, walker.y, walker.x + columns, walker.bottom(), 40);
-      const auto regions = finder.update(picture.mask.view(), {}, {}, {difference.view(), 30});
+      const auto regions =
+          picture.find_changing(finder, walker.x, walker.y, walker.x + columns, walker.bottom());
       ck_assert_uint_eq(regions.size(), 1);
       ck_assert_int_eq(is_person_like(regions[0]), columns == 12 && k >= 3);
     }
@@ -318,10 +322,8 @@ START_TEST(who_has_walked_a_tenth_of_his_height_is_a_person_unless_all_of_him_re
     for (int k = 0; k < 4; ++k) {
       Picture picture;
       const Box walker = picture.person(100 + 2 * k, 200);
-      Image<std::uint8_t> difference(kSize);
-      difference.fill_bytes(0);
-      tests::fill(difference.view(), walker.right() - columns, walker.y, walker.right(), walker.bottom(), 40);
-      const auto regions = finder.update(picture.mask.view(), {}, {}, {difference.view(), 30});
+      const auto regions =
+          picture.find_changing(finder, walker.right() - columns, walker.y, walker.right(), walker.bottom());
       ck_assert_uint_eq(regions.size(), 1);
       ck_assert_int_eq(is_person_like(regions[0]), columns == 2 && k == 3);
     }

@@ -25,6 +25,14 @@ int whole(double value) {
   return static_cast<int>(value + (value < 0 ? -0.5 : 0.5));
 }
 
+// What a cell adds to the sums, by its flags.
+constexpr std::array<std::uint32_t, 2 * kCellExplained> kCarried = [] {
+  std::array<std::uint32_t, 2 * kCellExplained> carried{};
+  for (std::uint32_t cell = 0; cell < kCellExplained; ++cell)
+    carried[cell] = (cell & kCellMoving ? kMoving : 0) + (cell & kCellCounted ? kCounted : 0);
+  return carried;
+}();
+
 }  // namespace
 
 PeopleFinder::PeopleFinder(const Parameters& parameters) : parameters_(parameters) {
@@ -148,14 +156,6 @@ void PeopleFinder::mark_explained(const Candidate& c) {
       for (int x = left; x < right; ++x) cells(r)[x] |= kCellExplained;
   }
 }
-
-// What a cell adds to the sums, by its flags.
-constexpr std::array<std::uint32_t, 2 * kCellExplained> kCarried = [] {
-  std::array<std::uint32_t, 2 * kCellExplained> carried{};
-  for (std::uint32_t cell = 0; cell < kCellExplained; ++cell)
-    carried[cell] = (cell & kCellMoving ? kMoving : 0) + (cell & kCellCounted ? kCounted : 0);
-  return carried;
-}();
 
 // After every change of what is explained in the rows from this one on.
 void PeopleFinder::add_up(int from) {
