@@ -3,12 +3,11 @@
 // against values computed by hand.
 #include "vision/change/light_kernels.h"
 
-#include <check.h>
-
 #include <algorithm>
 #include <random>
 #include <vector>
 
+#include "support/pictures.h"
 #include "support/targets.h"
 
 using namespace cerberus::vision;
@@ -103,9 +102,78 @@ START_TEST(near_white_is_what_the_present_has_between_what_it_is_in_the_two_ligh
 }
 END_TEST
 
+START_TEST(samples_are_relit_as_rows_are) {
+  std::mt19937 random(4);
+  for (int round = 0; round < 100; ++round) {
+    const auto samples = levels(kSampleLanes, 0, random);
+    RowLight light = any_light(random);
+    if (round % 4 == 1) light.gain *= 16;
+    std::vector<std::uint8_t> fast(kSampleLanes), slow(kSampleLanes);
+    relight_samples(samples.data(), light, fast.data());
+    relight_row(samples.data(), light, kSampleLanes, slow.data());
+    ck_assert(fast == slow);
+  }
+}
+END_TEST
+
+START_TEST(every_eighth_is_taken_and_nothing_behind_the_last_is_read) {
+  std::mt19937 random(5);
+  for (int number = 0; number <= 40; ++number) {
+    const std::size_t bytes = number ? static_cast<std::size_t>(8 * (number - 1) + 1) : 0;
+    GuardedBytes from(bytes);
+    for (std::size_t i = 0; i < bytes; ++i) from.data()[i] = static_cast<std::uint8_t>(random());
+    std::vector<std::uint8_t> to(static_cast<std::size_t>(number) + 1, 7);
+    take_every_eighth(from.data(), number, to.data());
+    for (int i = 0; i < number; ++i) ck_assert_uint_eq(to[static_cast<std::size_t>(i)], from.data()[8 * i]);
+    ck_assert_uint_eq(to.back(), 7);
+  }
+}
+END_TEST
+
+START_TEST(gains_are_those_of_half_a_level_less_and_more) {
+  // A level is 2/256 of 128 and 25.6/256 of 10. What is beyond a quarter counts as a quarter.
+  std::vector<std::uint8_t> reference(kSampleLanes, 100), now(kSampleLanes, 128), present(kSampleLanes, 128);
+  const auto put = [&](std::size_t i, int level, int to) {
+    now[i] = static_cast<std::uint8_t>(level), present[i] = static_cast<std::uint8_t>(to);
+  };
+  put(1, 128, 130), put(2, 10, 10), put(3, 20, 200), put(4, 200, 20), put(5, 235, 236), put(6, 0, 0);
+  reference[7] = 245;
+  const struct {
+    int lower, higher, weight;
+  } expected[] = {{-1, 1, 64},    {3, 5, 64}, {-13, 12, 10}, {64, 64, 20},
+                  {-64, -64, 64}, {0, 0, 0},  {0, 0, 0},     {0, 0, 0}};
+  for (const auto find : {find_gains, find_gains_reference}) {
+    SampleGains gains;
+    find(reference.data(), now.data(), present.data(), gains);
+    for (std::size_t i = 0; i < std::size(expected); ++i) {
+      ck_assert_uint_eq(gains.weight[i], static_cast<unsigned>(expected[i].weight));
+      if (!expected[i].weight) continue;
+      ck_assert_int_eq(gains.lower[i] - SampleGains::kReach, expected[i].lower);
+      ck_assert_int_eq(gains.higher[i] - SampleGains::kReach, expected[i].higher);
+    }
+  }
+}
+END_TEST
+
+START_TEST(gains_agree_with_the_reference_for_all_levels) {
+  for (unsigned level = 0; level < 256; ++level)
+    for (unsigned to = 0; to < 256; to += kSampleLanes) {
+      std::vector<std::uint8_t> now(kSampleLanes, static_cast<std::uint8_t>(level)), present(kSampleLanes);
+      for (std::size_t i = 0; i < kSampleLanes; ++i) present[i] = static_cast<std::uint8_t>(to + i);
+      SampleGains fast, slow;
+      find_gains(present.data(), now.data(), present.data(), fast);
+      find_gains_reference(present.data(), now.data(), present.data(), slow);
+      ck_assert(fast.lower == slow.lower && fast.higher == slow.higher && fast.weight == slow.weight);
+    }
+}
+END_TEST
+
 int main() {
   return run_suite_on_every_target(
-      "light_kernels", {sums_agree_with_the_reference, sums_leave_white_out_and_limit_what_remains,
-                        rows_are_relit_as_the_reference_does_in_place_too,
-                        near_white_is_what_the_present_has_between_what_it_is_in_the_two_lights});
+      "light_kernels",
+      {sums_agree_with_the_reference, sums_leave_white_out_and_limit_what_remains,
+       rows_are_relit_as_the_reference_does_in_place_too,
+       near_white_is_what_the_present_has_between_what_it_is_in_the_two_lights, samples_are_relit_as_rows_are,
+       every_eighth_is_taken_and_nothing_behind_the_last_is_read,
+       gains_are_those_of_half_a_level_less_and_more, gains_agree_with_the_reference_for_all_levels});
 }

@@ -2,7 +2,7 @@
 // Scoring places for people: by hand, against the obvious loop for every processor's code, and to the last byte.
 #include "vision/detection/people_kernels.h"
 
-#include <climits>
+#include <algorithm>
 #include <random>
 #include <vector>
 
@@ -22,18 +22,24 @@ std::vector<std::uint32_t> sums_of(const std::vector<std::pair<unsigned, unsigne
   return sums;
 }
 
+// A body whose other parts are empty.
+BodyBands body_of(const BodyBand& band) {
+  const BodyBand none{band.above, band.above, 0, 0, 50, -50, 50, -50};
+  return {none, band, none, none};
+}
+
 }  // namespace
 
-START_TEST(a_band_gains_by_its_core_and_its_sides) {
+START_TEST(a_body_gains_by_its_core_and_its_sides) {
   // Six columns; the band takes 10 of their rows, of which 4 lie above it. Core: columns 2 and 3; sides: 1 and 4.
   const auto above = sums_of({{4, 4}, {1, 4}, {0, 4}, {4, 4}, {2, 4}, {0, 4}});
   const auto below = sums_of({{4, 14}, {4, 14}, {10, 14}, {11, 13}, {3, 14}, {0, 14}});
   const BodyBand band{above.data(), below.data(), 1, 2, 100, -7, 30, -2};
-  int scores[] = {0, 0, 0, 1000, 0, 0, 0};
-  add_band(band, 3, 4, scores);
+  int scores[] = {1, 1, 1, 1000, 1, 1, 1};
   const int core = (10 + 7) * 100 + (0 + 2) * -7, sides = (3 + 1) * 30 + (7 + 9) * -2;
-  ck_assert_int_eq(scores[3], 1000 + core + sides);
-  for (const int x : {0, 1, 2, 4, 5, 6}) ck_assert_int_eq(scores[x], 0);
+  ck_assert_int_eq(score_bodies(body_of(band), 3, 4, scores), core + sides);
+  ck_assert_int_eq(scores[3], core + sides);
+  for (const int x : {0, 1, 2, 4, 5, 6}) ck_assert_int_eq(scores[x], 1);
 }
 END_TEST
 
@@ -43,16 +49,15 @@ START_TEST(cells_that_are_not_counted_gain_nothing) {
   const auto below = sums_of({{0, 0}, {0, 0}, {10, 10}, {10, 10}});
   const BodyBand band{above.data(), below.data(), 1, 2, 100, -7, 30, -2};
   int scores[3] = {};
-  add_band(band, 2, 3, scores);
-  ck_assert_int_eq(scores[2], 10 * 100 + 10 * 30);
+  ck_assert_int_eq(score_bodies(body_of(band), 2, 3, scores), 10 * 100 + 10 * 30);
 }
 END_TEST
 
-START_TEST(random_bands_score_as_in_the_reference_loop_and_nothing_else_is_touched) {
+START_TEST(random_bodies_score_as_in_the_reference_loop_and_nothing_else_is_touched) {
   std::mt19937 random(3);
   const auto upto = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n + 1)); };
   for (int round = 0; round < 300; ++round) {
-    const int columns = 1 + upto(90), reach = upto(columns / 2), core = upto(reach);
+    const int columns = 1 + upto(90), reach = upto(columns / 2);
     // The last sum is the last readable thing.
     const std::size_t bytes = (static_cast<std::size_t>(columns) + 1) * 4;
     GuardedBytes memory(bytes), more(bytes);
@@ -64,18 +69,24 @@ START_TEST(random_bands_score_as_in_the_reference_loop_and_nothing_else_is_touch
       above[c + 1] = above[c] + random() % (counted + 1) * kMoving + counted * kCounted;
       below[c + 1] = below[c] + (above[c + 1] - above[c]) + random() % (rows + 1) * kMoving + rows * kCounted;
     }
-    const BodyBand band{above, below, core, reach, upto(200), -upto(200), upto(200) - 100, -upto(50)};
-    const int first = reach + upto(columns - 2 * reach), end = first + upto(columns - reach + 1 - first);
+    BodyBands body;
+    for (BodyBand& band : body) {
+      const int core = upto(reach);
+      band = {above,      below,           core,     core + upto(reach - core), upto(200),
+              -upto(200), upto(200) - 100, -upto(50)};
+    }
+    const int first = reach + upto(columns - 2 * reach), end = first + 1 + upto(columns - reach - first);
     std::vector<int> expected(static_cast<std::size_t>(columns) + 2, 77), scores = expected;
-    add_band_reference(band, first, end, expected.data());
-    add_band(band, first, end, scores.data());
+    const int most = score_bodies_reference(body, first, end, expected.data());
+    ck_assert_int_eq(score_bodies(body, first, end, scores.data()), most);
     ck_assert(scores == expected);
+    ck_assert_int_eq(most, *std::max_element(expected.begin() + first, expected.begin() + end));
   }
 }
 END_TEST
 
 int main() {
   return run_suite_on_every_target(
-      "people_kernels", {a_band_gains_by_its_core_and_its_sides, cells_that_are_not_counted_gain_nothing,
-                         random_bands_score_as_in_the_reference_loop_and_nothing_else_is_touched});
+      "people_kernels", {a_body_gains_by_its_core_and_its_sides, cells_that_are_not_counted_gain_nothing,
+                         random_bodies_score_as_in_the_reference_loop_and_nothing_else_is_touched});
 }

@@ -32,19 +32,10 @@ constexpr struct Parameters {
   double least_gain = 0.25, most_gain = 4.0;  // of a change of light
   // Bands of rows.
   int least_bands = 4;      // in a picture that is searched for them
-  int full_weight = 64;     // grey levels from which a sample counts fully for a gain
   int least_of_third = 8;   // samples of a third of a band that counts
   int least_samples = 12;   // samples of a band that counts
   double least_band = 1.0;  // grey levels: weaker bands are not compensated
-  int band_reach = 64;      // 1/256: largest excess of a band's gain
 } kParameters;
-
-// 1/256 of a gain that half a grey level is, 8 bits of fraction, by the level it is added to.
-constexpr auto kInverse = [] {
-  std::array<int, 256> inverse{};
-  for (int level = 0; level < 256; ++level) inverse[level] = 128 * 256 / (level ? level : 1);
-  return inverse;
-}();
 
 // Returns whether two thirds of a band are mostly brighter, or mostly darker: a band of light covers the whole row, an
 // object rarely does. Without such thirds, no median can be as far from 0 as kParameters.least_band.
@@ -123,11 +114,17 @@ void LightChange::estimate(const LightSamples& samples, bool still) {
 // difference of the present picture.
 LightChange::Counts LightChange::count_differences(const LightSamples& samples) const {
   Counts counts{};
+  std::uint64_t* const all = counts[0].data();
   for (int row = 0; row < samples.rows(); ++row)
-    samples.for_each(row, light_of(row), [&](int, int now, int value) {
-      const int difference = std::clamp(value - now, -kReach, kReach);
-      counts[now >> 4][difference + kReach] += 1 | static_cast<std::uint64_t>(now & 15) << 32;
-    });
+    samples.for_each(row, light_of(row),
+                     [&](auto*, const std::uint8_t* now, const std::uint8_t* value, int n) {
+                       std::array<std::uint16_t, kSampleLanes> cell;  // all of them first, by vectors
+                       for (int i = 0; i < kSampleLanes; ++i)
+                         cell[i] = static_cast<std::uint16_t>((now[i] >> 4) * kLevels + kReach +
+                                                              std::clamp(value[i] - now[i], -kReach, kReach));
+                       for (int i = 0; i < n; ++i)
+                         all[cell[i]] += 1 | static_cast<std::uint64_t>(now[i] & 15) << 32;
+                     });
   return counts;
 }
 
@@ -219,23 +216,21 @@ double LightChange::misfit(const LightSamples& samples) const {
   return number ? static_cast<double>(sum) / number : 0;
 }
 
-// The median of the gains of a band's samples, less 1. Dark samples weigh little, and whole levels make steps there, so
-// half of each sample is counted half a level lower and half of it half a level higher.
+// The median of the gains of a band's samples, less 1, at most SampleGains::kReach. Dark samples weigh little.
 double LightChange::excess_of_band(const LightSamples& samples, int band) const {
-  constexpr int kBandReach = kParameters.band_reach;
-  std::array<std::uint32_t, 2 * kBandReach + 1> counts{};
+  std::array<std::uint32_t, 2 * SampleGains::kReach + 1> counts{};
   std::int64_t weights = 0;
   for (int row = samples.first_row(band); row < samples.first_row(band + 1); ++row)
-    samples.for_each(row, light_of(row), [&](int level, int now, int value) {
-      if (level >= kWhite || now >= kNearWhite) return;
-      const int weight = std::min(now, kParameters.full_weight), inverse = kInverse[now];
-      for (const int half : {-1, 1}) {
-        const int excess = ((2 * (value - now) + half) * inverse) >> 8;
-        counts[std::clamp(excess, -kBandReach, kBandReach) + kBandReach] += weight;
+    samples.for_each(row, light_of(row), [&](auto* level, auto* now, auto* value, int n) {
+      SampleGains gains;
+      find_gains(level, now, value, gains);
+      for (int i = 0; i < n; ++i) {
+        counts[gains.lower[i]] += gains.weight[i];
+        counts[gains.higher[i]] += gains.weight[i];
+        weights += 2 * gains.weight[i];
       }
-      weights += 2 * weight;
     });
-  return median_of_levels(counts, weights, -kBandReach) / 256;
+  return median_of_levels(counts, weights, -SampleGains::kReach) / 256;
 }
 
 // Estimates the bands. Returns true if there are any.

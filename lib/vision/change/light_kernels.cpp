@@ -64,7 +64,21 @@ void relight_row(const std::uint8_t* reference, RowLight light, int count, std::
   relight(reference, light, count, out);
 }
 
+HWY_INLINE void take_each(const std::uint8_t* from, int number, std::uint8_t* to) {
+  for (int i = 0; i < number; ++i) to[i] = from[8 * i];
+}
+
 #if HWY_TARGET == HWY_SCALAR
+void relight_samples(const std::uint8_t* reference, RowLight light, std::uint8_t* out) {
+  relight(reference, light, kSampleLanes, out);
+}
+void take_every_eighth(const std::uint8_t* from, int number, std::uint8_t* to) {
+  take_each(from, number, to);
+}
+void find_gains(const std::uint8_t* reference, const std::uint8_t* now, const std::uint8_t* present,
+                SampleGains& gains) {
+  find_gains_reference(reference, now, present, gains);
+}
 void relight_row_with_white(const std::uint8_t* reference, const std::uint8_t* present, RowLight light,
                             int count, std::uint8_t* out) {
   relight_row_with_white_reference(reference, present, light, count, out);
@@ -74,6 +88,72 @@ LightSums sum_samples(const std::uint8_t* reference, const std::uint8_t* present
   return sum_samples_reference(reference, present, lights, rows, third);
 }
 #else
+
+using Samples = hn::FixedTag<std::uint8_t, kSampleLanes>;
+
+HWY_INLINE hn::Vec<Samples> relit_samples(const std::uint8_t* reference, RowLight light) {
+  const Relit relit(light);
+  const hn::Half<Samples> bytes;
+  const hn::Rebind<std::int16_t, decltype(bytes)> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  const auto half = [&](const std::uint8_t* p) HWY_ATTR {
+    const auto level = hn::PromoteTo(d, hn::LoadU(bytes, p));
+    const auto low =
+        hn::Add(hn::Mul(hn::BitCast(du, level), hn::Set(du, relit.gain_low)), hn::Set(du, relit.offset_low));
+    const auto high = hn::Add(hn::Mul(level, hn::Set(d, relit.gain_high)), hn::Set(d, relit.offset_high));
+    return hn::DemoteTo(bytes, hn::Add(high, hn::BitCast(d, hn::ShiftRight<8>(low))));
+  };
+  return hn::Combine(Samples(), half(reference + kSampleLanes / 2), half(reference));
+}
+
+void relight_samples(const std::uint8_t* reference, RowLight light, std::uint8_t* out) {
+  hn::StoreU(relit_samples(reference, light), Samples(), out);
+}
+
+// Every sample is a byte of a 64-bit lane: the first one, or in the last vector, which begins 7 bytes earlier so that it
+// ends with the last sample, the last one.
+void take_every_eighth(const std::uint8_t* from, int number, std::uint8_t* to) {
+  const hn::CappedTag<std::uint64_t, 8> wide;
+  const hn::Rebind<std::uint8_t, decltype(wide)> bytes;
+  const int lanes = static_cast<int>(hn::Lanes(wide));
+  if (number <= lanes) return take_each(from, number, to);
+  const auto load = [&](const std::uint8_t* p) HWY_ATTR {
+    return hn::BitCast(wide, hn::LoadU(hn::Repartition<std::uint8_t, decltype(wide)>(), p));
+  };
+  for (int i = 0; i < number - lanes; i += lanes)
+    hn::StoreU(hn::TruncateTo(bytes, load(from + 8 * i)), bytes, to + i);
+  const int last = number - lanes;
+  hn::StoreU(hn::TruncateTo(bytes, hn::ShiftRight<56>(load(from + 8 * last - 7))), bytes, to + last);
+}
+
+void find_gains(const std::uint8_t* reference, const std::uint8_t* now, const std::uint8_t* present,
+                SampleGains& gains) {
+  const hn::CappedTag<std::int32_t, 8> d;
+  const hn::Rebind<float, decltype(d)> floats;
+  const hn::Rebind<std::uint8_t, decltype(d)> bytes;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const auto reach = hn::Set(d, SampleGains::kReach);
+  for (int i = 0; i < kSampleLanes; i += lanes) {
+    const auto load = [&](const std::uint8_t* p)
+                          HWY_ATTR { return hn::PromoteTo(d, hn::LoadU(bytes, p + i)); };
+    const auto level = load(now);
+    // The quotient of such small integers is exact where it is whole, and else farther from the next one than its
+    // rounding.
+    const auto divisor = hn::ConvertTo(floats, hn::Max(level, hn::Set(d, 1)));
+    const auto half = hn::ConvertTo(d, hn::Div(hn::Set(floats, SampleGains::kHalfLevel), divisor));
+    const auto middle = hn::Mul(hn::ShiftLeft<1>(hn::Sub(load(present), level)), half);
+    const auto index = [&](auto gain) HWY_ATTR {
+      const auto limited = hn::Max(hn::Min(hn::ShiftRight<8>(gain), reach), hn::Neg(reach));
+      return hn::DemoteTo(bytes, hn::Add(limited, reach));
+    };
+    hn::StoreU(index(hn::Sub(middle, half)), bytes, gains.lower.data() + i);
+    hn::StoreU(index(hn::Add(middle, half)), bytes, gains.higher.data() + i);
+    const auto counts =
+        hn::And(hn::Lt(load(reference), hn::Set(d, kWhite)), hn::Lt(level, hn::Set(d, kNearWhite)));
+    const auto weight = hn::Min(level, hn::Set(d, SampleGains::kFullWeight));
+    hn::StoreU(hn::DemoteTo(bytes, hn::IfThenElseZero(counts, weight)), bytes, gains.weight.data() + i);
+  }
+}
 
 void relight_row_with_white(const std::uint8_t* reference, const std::uint8_t* present, RowLight light,
                             int count, std::uint8_t* out) {
@@ -96,10 +176,9 @@ void relight_row_with_white(const std::uint8_t* reference, const std::uint8_t* p
 
 LightSums sum_samples(const std::uint8_t* reference, const std::uint8_t* present, const RowLight* lights,
                       int rows, int third) {
-  const hn::CappedTag<std::uint8_t, kSampleLanes> d;
+  const Samples d;
   const hn::Repartition<std::uint64_t, decltype(d)> wide;
   using Sum = hn::Vec<decltype(wide)>;
-  if (hn::Lanes(d) != kSampleLanes) return sum_samples_reference(reference, present, lights, rows, third);
   const auto white = hn::Set(d, kWhite), near_white = hn::Set(d, kNearWhite);
   const auto most = hn::Set(d, LightSums::kMost);
   LightSums sums;
@@ -117,10 +196,8 @@ LightSums sum_samples(const std::uint8_t* reference, const std::uint8_t* present
            down = hn::Zero(d);  // by lane; counted down by masks of ones, -1
       for (int x = 0; x < third; x += kSampleLanes) {
         const std::uint8_t* from = reference + begin + x;
-        alignas(16) std::uint8_t lit[kSampleLanes];
-        if (!same) relight(from, light, kSampleLanes, lit);
         const auto a = hn::LoadU(d, from), b = hn::LoadU(d, present + begin + x);
-        const auto now = same ? a : hn::Load(d, lit);
+        const auto now = same ? a : relit_samples(from, light);
         const auto use = hn::And(hn::Lt(a, white), hn::Lt(now, near_white));
         const auto above = hn::SaturatedSub(b, now), below = hn::SaturatedSub(now, b);
         n = hn::Sub(n, hn::VecFromMask(d, use));
@@ -149,10 +226,23 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace cerberus::vision {
 
+HWY_EXPORT(find_gains);
+HWY_EXPORT(take_every_eighth);
+HWY_EXPORT(relight_samples);
 HWY_EXPORT(relight_row);
 HWY_EXPORT(relight_row_with_white);
 HWY_EXPORT(sum_samples);
 
+void find_gains(const std::uint8_t* reference, const std::uint8_t* now, const std::uint8_t* present,
+                SampleGains& gains) {
+  HWY_DYNAMIC_DISPATCH(find_gains)(reference, now, present, gains);
+}
+void take_every_eighth(const std::uint8_t* from, int number, std::uint8_t* to) {
+  HWY_DYNAMIC_DISPATCH(take_every_eighth)(from, number, to);
+}
+void relight_samples(const std::uint8_t* reference, RowLight light, std::uint8_t* out) {
+  HWY_DYNAMIC_DISPATCH(relight_samples)(reference, light, out);
+}
 void relight_row(const std::uint8_t* reference, RowLight light, int count, std::uint8_t* out) {
   HWY_DYNAMIC_DISPATCH(relight_row)(reference, light, count, out);
 }
@@ -163,6 +253,22 @@ void relight_row_with_white(const std::uint8_t* reference, const std::uint8_t* p
 LightSums sum_samples(const std::uint8_t* reference, const std::uint8_t* present, const RowLight* lights,
                       int rows, int third) {
   return HWY_DYNAMIC_DISPATCH(sum_samples)(reference, present, lights, rows, third);
+}
+
+void find_gains_reference(const std::uint8_t* reference, const std::uint8_t* now, const std::uint8_t* present,
+                          SampleGains& gains) {
+  constexpr int kReach = SampleGains::kReach;
+  for (std::size_t i = 0; i < kSampleLanes; ++i) {
+    const int half = static_cast<int>(SampleGains::kHalfLevel) / std::max<int>(now[i], 1);
+    const auto index = [&](int halves) {
+      return static_cast<std::uint8_t>(std::clamp((halves * half) >> 8, -kReach, kReach) + kReach);
+    };
+    const int twice = 2 * (present[i] - now[i]);
+    gains.lower[i] = index(twice - 1);
+    gains.higher[i] = index(twice + 1);
+    const bool white = reference[i] >= kWhite || now[i] >= kNearWhite;
+    gains.weight[i] = white ? 0 : std::min(now[i], std::uint8_t{SampleGains::kFullWeight});
+  }
 }
 
 void relight_row_with_white_reference(const std::uint8_t* reference, const std::uint8_t* present,

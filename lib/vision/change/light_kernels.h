@@ -27,6 +27,23 @@ void relight_row_with_white(const std::uint8_t* reference, const std::uint8_t* p
 void relight_row_with_white_reference(const std::uint8_t* reference, const std::uint8_t* present,
                                       RowLight light, int count, std::uint8_t* out);
 
+constexpr int kSampleLanes = 16;
+
+// The gains of samples beyond their light, 1/256, each counted half a level lower and half a level higher, because whole
+// levels make steps in the gains of dark samples. Indices from 0, for -kReach, to 2 kReach, which hold what is beyond as
+// well; the weight of white samples is 0.
+struct SampleGains {
+  static constexpr int kReach = 64;       // 1/256
+  static constexpr int kFullWeight = 64;  // grey levels under the light: from there on a sample counts fully
+  static constexpr float kHalfLevel = 128 * 256;  // half a grey level, 16 bits of fraction
+  std::array<std::uint8_t, kSampleLanes> lower, higher, weight;
+};
+// `reference`, `now` (the same under the light) and `present`: kSampleLanes of them.
+void find_gains(const std::uint8_t* reference, const std::uint8_t* now, const std::uint8_t* present,
+                SampleGains& gains);
+void find_gains_reference(const std::uint8_t* reference, const std::uint8_t* now, const std::uint8_t* present,
+                          SampleGains& gains);
+
 // Statistics of the light over samples of the reference and the present picture, by thirds of the picture's width. White
 // samples do not count: below kWhite in the reference, below kNearWhite under the light.
 struct LightSums {
@@ -36,7 +53,10 @@ struct LightSums {
   std::int32_t misfit = 0;  // remaining differences, at most kMost each
   bool operator==(const LightSums&) const = default;
 };
-constexpr int kSampleLanes = 16;
+// As relight_row(), of kSampleLanes.
+void relight_samples(const std::uint8_t* reference, RowLight light, std::uint8_t* out);
+// to[i] := from[8 i] for i < number. Reads nothing beyond from[8 (number - 1)].
+void take_every_eighth(const std::uint8_t* from, int number, std::uint8_t* to);
 // Samples are in rows of three thirds, each `third` long: a multiple of kSampleLanes, at most 255 of them; padding
 // is white in the reference. One light for each row.
 LightSums sum_samples(const std::uint8_t* reference, const std::uint8_t* present, const RowLight* lights,

@@ -2,8 +2,11 @@
 #include "vision/change/light_samples.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace cerberus::vision {
+
+static_assert(LightSamples::kColumnStep == 8);  // take_every_eighth()
 
 void LightSamples::take(GrayView reference, GrayView present, std::span<const RowSpan> spans) {
   height_ = present.empty() ? 0 : present.height;
@@ -22,9 +25,12 @@ void LightSamples::take(GrayView reference, GrayView present, std::span<const Ro
       std::uint8_t* to_reference =
           reference_.data() + start_of(row) + static_cast<std::ptrdiff_t>(part) * third_;
       std::uint8_t* to_present = present_.data() + start_of(row) + static_cast<std::ptrdiff_t>(part) * third_;
-      int number = 0;
-      for (; x < end; x += kColumnStep, ++number) to_reference[number] = a[x], to_present[number] = b[x];
-      std::fill(to_reference + number, to_reference + third_, std::uint8_t{255});  // white: no sample
+      const int number = std::max(0, (end - x + kColumnStep - 1) / kColumnStep);
+      for (int i = number / kSampleLanes * kSampleLanes; i < third_; i += kSampleLanes)
+        std::memset(to_reference + i, 255, kSampleLanes);  // white: no sample
+      take_every_eighth(a + x, number, to_reference);
+      take_every_eighth(b + x, number, to_present);
+      x += number * kColumnStep;
       rows_[static_cast<std::size_t>(row)][static_cast<std::size_t>(part)] =
           static_cast<std::uint16_t>(number);
     }

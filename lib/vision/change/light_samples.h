@@ -32,7 +32,8 @@ class LightSamples {
   // Statistics of the band's samples under the lights of the picture's rows.
   LightSums sums_of_band(int band, std::span<const RowLight> lights) const;
   int first_row(int band) const { return std::min(band * kBandRows, rows()); }
-  // Calls each(level in the reference, the same under the light, level in the present) for a row's samples.
+  // Calls each(reference, the same under the light, present, number) for a row's samples, at most kSampleLanes at once,
+  // of which the arrays have room for all.
   template <typename Each>
   void for_each(int row, RowLight light, Each&& each) const {
     const std::uint8_t *a = reference_.data() + start_of(row), *b = present_.data() + start_of(row);
@@ -40,10 +41,8 @@ class LightSamples {
     for (const int number : rows_[static_cast<std::size_t>(row)]) {
       for (int begin = 0; begin < number; begin += kSampleLanes) {
         std::array<std::uint8_t, kSampleLanes> lit;
-        if (!same) relight_row(a + begin, light, kSampleLanes, lit.data());
-        const std::uint8_t *from = a + begin, *now = same ? from : lit.data(), *to = b + begin;
-        const int count = std::min(number - begin, kSampleLanes);
-        for (int i = 0; i < count; ++i) each(int{from[i]}, int{now[i]}, int{to[i]});
+        if (!same) relight_samples(a + begin, light, lit.data());
+        each(a + begin, same ? a + begin : lit.data(), b + begin, std::min(number - begin, kSampleLanes));
       }
       a += third_, b += third_;
     }

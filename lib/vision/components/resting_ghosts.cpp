@@ -32,27 +32,12 @@ bool is_set(BitView mask, int x, int y) {
 
 }  // namespace
 
-// Returns whether any pixel of the mask rests.
-bool RestingGhosts::find_resting(GrayView quiet, int rested, BitView mask) {
-  bool any = false;
-  for (int y = 0; y < quiet.height; ++y) {
-    const std::uint8_t* since = quiet.row(y);
-    std::uint64_t* row = resting_.view().row(y);
-    std::fill_n(row, mask.width, std::uint64_t{0});
-    for_bits(mask.row(y), 0, quiet.width, [&](int x) {
-      if (since[x] < rested) return;
-      set_bits(row, x, x + 1);
-      any = true;
-    });
-  }
-  return any;
-}
-
 void RestingGhosts::remove(const Pictures& pictures, int rested, Labeller& labeller, MutableBitView mask,
                            MutableBitView absorb) {
   const Parameters& p = kParameters;
   const GrayView &f = pictures.frame, &b = pictures.background;
-  if (!find_resting(pictures.quiet, rested, mask)) return;
+  binarise(pictures.quiet, rested - 1, resting_.view());
+  intersect(resting_.view(), mask, resting_.view());
   const auto components =
       labeller.find(resting_.view(), f.width, static_cast<std::uint32_t>(p.least_area * f.size().area()));
   if (components.size() > kMostComponents) return;

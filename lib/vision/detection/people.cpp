@@ -38,14 +38,14 @@ constexpr std::array<std::uint32_t, 2 * kCellExplained> kCarried = [] {
 PeopleFinder::PeopleFinder(const Parameters& parameters) : parameters_(parameters) {
   const Parameters& q = parameters_;
   const Part parts[] = {q.free_space, q.body[0], q.body[1], q.body[2]};
-  static_assert(std::size(parts) == kParts);
+  static_assert(std::size(parts) == kBodyBands);
   const auto gain = [&](double p, double price) {
     return whole(kUnit * (std::log(p / q.elsewhere) - price));
   };
   const auto loss = [&](double p, double price) {
     return whole(kUnit * (std::log((1 - p) / (1 - q.elsewhere)) - price));
   };
-  for (std::size_t i = 0; i < kParts; ++i) {
+  for (std::size_t i = 0; i < kBodyBands; ++i) {
     const Part& p = parts[i];
     const double price = i == 0 ? 0 : q.price;
     bands_[i].core_moving = gain(p.core_moving, price);
@@ -129,6 +129,9 @@ void PeopleFinder::lay_grid(BitView pixels, const Bounds& window, double tallest
       if (static_cast<int>(moving[c]) >= half) cells(r)[c] |= kCellMoving;
   }
   shapes_.assign(static_cast<std::size_t>(rows_) + 1, {});
+  explained_from_ = rows_;
+  summed_to_ = 0;
+  largest_spread_ = 0;
   for (int r = 0; r <= rows_; ++r) {
     const double height = (height_known_ ? prior_->height(y0_ + r * step_) : tallest) / step_;
     if (!(height > 0)) continue;
@@ -136,19 +139,26 @@ void PeopleFinder::lay_grid(BitView pixels, const Bounds& window, double tallest
                                         : parameters_.unknown_spread;
     shapes_[r] = {std::max(2, whole(height)), std::max(1, whole(parameters_.aspect * height)),
                   static_cast<float>(spread)};
+    largest_spread_ = std::max(largest_spread_, shapes_[r].spread);
   }
   scores_.resize(static_cast<std::size_t>(columns_) + 1);
 }
 
 void PeopleFinder::clear_explained() {
-  for (std::uint8_t& cell : cells_) cell &= static_cast<std::uint8_t>(~kCellExplained);
+  for (std::uint8_t& cell : cells_.subspan(static_cast<std::size_t>(explained_from_) * columns_))
+    cell &= static_cast<std::uint8_t>(~kCellExplained);
+  summed_to_ = std::min(summed_to_, explained_from_);
+  explained_from_ = rows_;
 }
 
 // The cells of the body are explained: they count for no other person. Those beside the head are not: a person behind may
 // be seen there.
 void PeopleFinder::mark_explained(const Candidate& c) {
   const Body& body = bodies_[static_cast<std::size_t>(c.bottom - c.top)];
-  for (std::size_t i = 1; i < kParts; ++i) {
+  const int from = std::max(0, c.top);
+  explained_from_ = std::min(explained_from_, from);
+  summed_to_ = std::min(summed_to_, from);
+  for (std::size_t i = 1; i < kBodyBands; ++i) {
     const Rows& part = body[i];
     const int reach = i == 1 ? part.core : part.reach;
     const int left = std::max(0, c.axis - reach), right = std::min(columns_, c.axis + reach);
@@ -157,11 +167,11 @@ void PeopleFinder::mark_explained(const Candidate& c) {
   }
 }
 
-// After every change of what is explained in the rows from this one on.
-void PeopleFinder::add_up(int from) {
+// After every change of what is explained.
+void PeopleFinder::add_up() {
   const std::size_t stride = static_cast<std::size_t>(columns_) + 1;
-  if (from == 0) std::fill_n(sums_.begin(), stride, 0u);
-  for (int r = from; r < rows_; ++r) {
+  if (summed_to_ == 0) std::fill_n(sums_.begin(), stride, 0u);
+  for (int r = summed_to_; r < rows_; ++r) {
     const std::uint32_t* above = sums(r);
     std::uint32_t* below = &sums_[(static_cast<std::size_t>(r) + 1) * stride];
     const std::uint8_t* row = cells(r);
@@ -171,6 +181,7 @@ void PeopleFinder::add_up(int from) {
       below[c + 1] = above[c + 1] + sum;
     }
   }
+  summed_to_ = rows_;
 }
 
 const std::uint32_t* PeopleFinder::sums(int row) const {
@@ -184,27 +195,15 @@ int PeopleFinder::moving_before(int column) const {
 
 // Fills scores_[first..end): gain of a body, less its price, by the column of its axis. Returns the highest.
 int PeopleFinder::score(int foot, int height, int first, int end) {
-  std::fill(scores_.begin() + first, scores_.begin() + end, 0);
   const Body& body = bodies_[static_cast<std::size_t>(height)];
   const int top = foot - height;
-  for (std::size_t i = 0; i < kParts; ++i) {
-    BodyBand& band = bands_[i];
-    const int from = std::clamp(top + body[i].top, 0, rows_), to = std::clamp(top + body[i].bottom, 0, rows_);
-    if (from == to) continue;
-    band.above = sums(from);
-    band.below = sums(to);
-    band.core = body[i].core;
-    band.reach = body[i].reach;
-    add_band(band, first, end, scores_.data());
+  for (std::size_t i = 0; i < kBodyBands; ++i) {
+    bands_[i].above = sums(std::clamp(top + body[i].top, 0, rows_));
+    bands_[i].below = sums(std::clamp(top + body[i].bottom, 0, rows_));
+    bands_[i].core = body[i].core;
+    bands_[i].reach = body[i].reach;
   }
-  return highest(first, end);
-}
-
-// Of scores_; the compiler's vectors find it, which they do not in std::max_element().
-int PeopleFinder::highest(int first, int end) const {
-  int most = scores_[static_cast<std::size_t>(first)];
-  for (int x = first; x < end; ++x) most = std::max(most, scores_[static_cast<std::size_t>(x)]);
-  return most;
+  return score_bodies(bands_, first, end, scores_.data());
 }
 
 // Replaces `best` where a person of this scale whose left edge lies in [from, to) and whose feet are at this row gains
@@ -215,12 +214,14 @@ void PeopleFinder::try_row(int foot, const Scale& scale, int from, int to, int a
   const int h = std::min(kTallest, whole(scale.factor * usual.height));
   const int w = std::max(2, whole(scale.factor * usual.width));
   if (usual.height == 0 || foot < h || foot - window_.top < q.least_feet * h) return;
-  const int reach = bodies_[static_cast<std::size_t>(h)][kParts - 1].reach;
+  const int reach = bodies_[static_cast<std::size_t>(h)][kBodyBands - 1].reach;
   const int first = std::max({from + w / 2, reach, inside_.left});
   const int end = std::min({to + w / 2, columns_ - reach + 1, inside_.right + 1});
   if (first >= end) return;
-  const double deviation = scale.log / usual.spread;
-  const int cost = static_cast<int>(kUnit * q.height_weight * deviation * deviation / 2 * h * h);
+  const auto unlikely = [&](double deviation) {
+    return static_cast<int>(kUnit * q.height_weight * deviation * deviation / 2 * h * h);
+  };
+  const int cost = scale.factor == 1 ? 0 : unlikely(scale.log / usual.spread);
   const int least =
       std::max(best.score, height_known_ ? static_cast<int>(kUnit * q.least_gain * h * h) - cost : 0);
   // All that moves in these rows, within reach of these axes, may be too little.
@@ -236,7 +237,7 @@ void PeopleFinder::try_row(int foot, const Scale& scale, int from, int to, int a
   };
   if (anchor >= 0) {
     for (int x = first; x < end; ++x) scores_[static_cast<std::size_t>(x)] -= lost(x);
-    most = highest(first, end) - cost;
+    most = *std::max_element(scores_.begin() + first, scores_.begin() + end) - cost;
     if (most <= least) return;
   }
   const auto at = std::find(scores_.begin() + first, scores_.begin() + end, most + cost);
@@ -253,13 +254,15 @@ PeopleFinder::Candidate PeopleFinder::best(int from, int to, int anchor) {
       std::numbers::sqrt2 * parameters_.spread;  // the line's error is as large as people differ
   Candidate best;
   const auto try_everywhere = [&](std::span<const Scale> scales) {
-    for (const Scale& scale : scales)
+    for (const Scale& scale : scales) {
+      if (scale.factor != 1 && height_known_ && largest_spread_ <= sure) continue;
       for (int foot = rows_; foot > window_.top; --foot) {
         const Shape& shape = shapes_[static_cast<std::size_t>(foot)];
         const bool allowed =
             !height_known_ || (shape.spread > sure && std::abs(scale.log) < kDeviations * shape.spread);
         if (scale.factor == 1 || allowed) try_row(foot, scale, from, to, anchor, best);
       }
+    }
   };
   if (!height_known_) {
     try_everywhere(unknown_scales_);
@@ -281,7 +284,7 @@ PeopleFinder::Candidate PeopleFinder::best(int from, int to, int anchor) {
 double PeopleFinder::gain_a_pixel(const Candidate& c) const {
   const Body& body = bodies_[static_cast<std::size_t>(c.bottom - c.top)];
   int seen = 0;
-  for (std::size_t i = 1; i < kParts; ++i) {
+  for (std::size_t i = 1; i < kBodyBands; ++i) {
     const int top = std::max(inside_.top, c.top + body[i].top),
               bottom = std::min(inside_.bottom, c.top + body[i].bottom);
     const int left = std::max(inside_.left, c.axis - body[i].reach),
@@ -295,7 +298,7 @@ double PeopleFinder::gain_a_pixel(const Candidate& c) const {
 int PeopleFinder::explain(bool from_the_left) {
   chosen_.clear();
   clear_explained();
-  add_up(0);
+  add_up();
   const Shape& usual = shapes_[static_cast<std::size_t>(std::min(window_.bottom, rows_))];
   const int width = std::max(1, usual.width);
   int total = 0, edge = window_.left;
@@ -321,7 +324,7 @@ int PeopleFinder::explain(bool from_the_left) {
     total += c.score;
     chosen_.push_back(c);
     mark_explained(c);
-    add_up(std::max(0, c.top));
+    add_up();
   }
   return total;
 }
@@ -334,7 +337,7 @@ void PeopleFinder::settle() {
     chosen_.erase(chosen_.begin());
     clear_explained();
     for (const Candidate& c : chosen_) mark_explained(c);
-    add_up(0);
+    add_up();
     const int w = old.right - old.left;
     const Candidate c = best(old.left - w / 2, old.left + w / 2 + 1, -1);
     if (c.score > 0) chosen_.push_back(c);

@@ -124,8 +124,7 @@ class PeopleFinder {
   struct Rows {  // of a part of a body of one height: offsets from its top row, columns from its axis
     std::int16_t top = 0, bottom = 0, core = 0, reach = 0;
   };
-  static constexpr std::size_t kParts = 4;  // free space, head, trunk, legs
-  using Body = std::array<Rows, kParts>;
+  using Body = std::array<Rows, kBodyBands>;
 
   void lay_grid(BitView pixels, const Bounds& window, double tallest);
   void choose(bool was_wide_block);
@@ -134,11 +133,10 @@ class PeopleFinder {
   int moving_before(int column) const;
   void clear_explained();
   void mark_explained(const Candidate& candidate);
-  void add_up(int from);
+  void add_up();
   void try_row(int foot, const Scale& scale, int from, int to, int anchor, Candidate& best);
   Candidate best(int from, int to, int anchor);
   int score(int foot, int height, int first, int end);
-  int highest(int first, int end) const;
   double gain_a_pixel(const Candidate& candidate) const;
   int explain(bool from_the_left);
   void settle();
@@ -147,7 +145,7 @@ class PeopleFinder {
   bool is_block(bool was_wide);
 
   Parameters parameters_;
-  std::array<BodyBand, kParts> bands_;  // gains only
+  BodyBands bands_;  // the gains, and the rows of the body that is being scored
   std::array<Body, kTallest + 1> bodies_;
   // The expected height, its neighbours, and those beyond, up to a quarter off, which are for a line that is uncertain.
   static constexpr std::size_t kNeighbours = 2;
@@ -160,7 +158,10 @@ class PeopleFinder {
   // The grid: cells of step_ x step_ pixels, the first one's corner at (x0_, y0_); the picture and the window in it.
   int step_ = 1, x0_ = 0, y0_ = 0, columns_ = 0, rows_ = 0;
   Bounds inside_, window_;
+  int explained_from_ = 0;     // the first row of which a cell may be explained
+  int summed_to_ = 0;          // rows of which the sums are right
   std::vector<Shape> shapes_;  // of each foot row 0..rows_
+  float largest_spread_ = 0;   // of shapes_
   // On the stack of find(): kCell... of people_kernels.h, and their sums, of the cells not yet explained above each row
   // and left of each column.
   std::span<std::uint8_t> cells_;

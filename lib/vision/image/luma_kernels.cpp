@@ -2,6 +2,7 @@
 #include "vision/image/luma_kernels.h"
 
 #include <cstring>
+#include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vision/image/luma_kernels.cpp"
@@ -80,9 +81,9 @@ void average_rows(const RowAverage& t, int width, std::uint16_t* out) {
 }
 
 // Sum of the products of one target pixel, spread over four lanes.
-template <class D16, class D32>
+template <class D16, class D32, class Blocks>
 HWY_INLINE hn::Vec<D32> column_products(D16 d16, D32 d32, const std::uint16_t* sums,
-                                        const std::int16_t* weights, int blocks) {
+                                        const std::int16_t* weights, Blocks blocks) {
   auto even = hn::Zero(d32), odd = hn::Zero(d32);
   for (int i = 0; i < blocks; ++i) {
     const auto s = hn::LoadU(d16, reinterpret_cast<const std::int16_t*>(sums + 8 * i));
@@ -91,10 +92,11 @@ HWY_INLINE hn::Vec<D32> column_products(D16 d16, D32 d32, const std::uint16_t* s
   return hn::Add(even, odd);
 }
 
-void average_columns(const std::uint16_t* sums, const std::int32_t* first, const std::int16_t* weights,
-                     int blocks, int width, std::uint8_t* out) {
-  int j = 0;
 #if HWY_TARGET != HWY_SCALAR
+// Averages four pixels at a time; returns how many. `blocks`: an int, or a constant of that type for the usual number.
+template <class Blocks>
+HWY_INLINE int average_fours(const std::uint16_t* sums, const std::int32_t* first,
+                             const std::int16_t* weights, Blocks blocks, int width, std::uint8_t* out) {
   const hn::FixedTag<std::int16_t, 8> d16;
   const hn::FixedTag<std::int32_t, 4> d32;
   const hn::FixedTag<std::uint8_t, 4> d8;
@@ -109,6 +111,7 @@ void average_columns(const std::uint16_t* sums, const std::int32_t* first, const
     return hn::Add(hn::InterleaveLower(d32, a, b), hn::InterleaveUpper(d32, a, b));
   };
   const auto half = hn::Set(d32, 1 << 20);
+  int j = 0;
   for (; j + 4 <= width; j += 4) {
     const auto ab = hn::BitCast(d64, fold(products(j), products(j + 1)));
     const auto cd = hn::BitCast(d64, fold(products(j + 2), products(j + 3)));
@@ -116,6 +119,18 @@ void average_columns(const std::uint16_t* sums, const std::int32_t* first, const
                                hn::BitCast(d32, hn::InterleaveUpper(d64, ab, cd)));
     hn::StoreU(hn::DemoteTo(d8, hn::ShiftRight<21>(hn::Add(total, half))), d8, out + j);
   }
+  return j;
+}
+#endif
+
+void average_columns(const std::uint16_t* sums, const std::int32_t* first, const std::int16_t* weights,
+                     int blocks, int width, std::uint8_t* out) {
+  int j = 0;
+#if HWY_TARGET != HWY_SCALAR
+  if (blocks == 1)
+    j = average_fours(sums, first, weights, std::integral_constant<int, 1>(), width, out);
+  else
+    j = average_fours(sums, first, weights, blocks, width, out);
 #endif
   for (; j < width; ++j) {
     const std::uint16_t* s = sums + first[j];
