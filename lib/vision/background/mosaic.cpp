@@ -171,9 +171,11 @@ void Mosaic::restore_area(const BackgroundPixels& pixels, const Area& area) {
     const double u0 = m[1] * y + m[2] + 0.5, v0 = m[4] * y + m[5] + 0.5, w0 = m[7] * y + m[8];
     std::uint8_t* age = pixels.age.row(y);
     for (int x = area.left; x < area.right; ++x) {
-      const void* unknown = std::memchr(age + x, 0, static_cast<std::size_t>(area.right - x));
-      if (!unknown) break;
-      x = static_cast<int>(static_cast<const std::uint8_t*>(unknown) - age);
+      if (age[x] != 0) {
+        const void* unknown = std::memchr(age + x, 0, static_cast<std::size_t>(area.right - x));
+        if (!unknown) break;
+        x = static_cast<int>(static_cast<const std::uint8_t*>(unknown) - age);
+      }
       double u = u0 + m[0] * x, v = v0 + m[3] * x;
       if (!affine) {
         const double w = 1 / (w0 + m[6] * x);

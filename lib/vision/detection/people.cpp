@@ -135,7 +135,8 @@ void PeopleFinder::lay_grid(BitView pixels, const Bounds& window, double tallest
   for (int r = 0; r <= rows_; ++r) {
     const double height = (height_known_ ? prior_->height(y0_ + r * step_) : tallest) / step_;
     if (!(height > 0)) continue;
-    const double spread = height_known_ ? std::hypot(parameters_.spread, prior_->uncertainty(y0_ + r * step_))
+    const double doubt = height_known_ ? prior_->uncertainty(y0_ + r * step_) : 0;
+    const double spread = height_known_ ? std::sqrt(parameters_.spread * parameters_.spread + doubt * doubt)
                                         : parameters_.unknown_spread;
     shapes_[r] = {std::max(2, whole(height)), std::max(1, whole(parameters_.aspect * height)),
                   static_cast<float>(spread)};

@@ -222,17 +222,26 @@ long RegionFinder::State::moving_in(const Box& box) const {
 
 // Share of the moving pixels in the window that lie in no person's box, nor just outside.
 double RegionFinder::State::unexplained(const Bounds& window, std::span<const Person> found) const {
-  long all = 0, explained = 0;
+  long all = 0, beside = 0;
   for (int y = window.top; y < window.bottom; ++y)
-    for_bits(moving.view().row(y), window.left, window.right, [&](int x) {
-      ++all;
-      explained += std::ranges::any_of(found, [&](const Person& person) {
+    for_words(window.left, window.right, [&](int word, std::uint64_t ones) {
+      std::uint64_t rest = moving.view().row(y)[word] & ones;
+      if (!rest) return;
+      all += std::popcount(rest);
+      // The first bit of the word at or beyond a place.
+      const auto bit = [&](double x) {
+        return static_cast<int>(std::clamp(std::ceil(x) - 64 * word, 0.0, 64.0));
+      };
+      for (const Person& person : found) {
         const Box& b = person.box;
         const double slack = parameters.regions.slack * b.height;
-        return x >= b.x - slack && x < b.right() + slack && y >= b.y - slack && y < b.bottom() + slack;
-      });
+        if (y < b.y - slack || y >= b.bottom() + slack) continue;
+        const int first = bit(b.x - slack), end = bit(b.right() + slack);
+        if (first < end) rest &= ~bits_between(first, end);
+      }
+      beside += std::popcount(rest);
     });
-  return all > 0 ? static_cast<double>(all - explained) / static_cast<double>(all) : 0;
+  return all > 0 ? static_cast<double>(beside) / static_cast<double>(all) : 0;
 }
 
 // Persons, and the components of the group that they do not explain.

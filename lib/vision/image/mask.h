@@ -25,14 +25,17 @@ inline std::uint64_t last_word_bits(int width) {
   return width % 64 ? (std::uint64_t{1} << (width % 64)) - 1 : ~std::uint64_t{0};
 }
 
+// The bits first..end-1 of a word, 0 <= first < end <= 64.
+inline std::uint64_t bits_between(int first, int end) {
+  return ~std::uint64_t{0} >> (64 - (end - first)) << first;
+}
+
 // Calls each(word, ones) with the bits first..end-1 of a row, word by word.
 template <typename Each>
 void for_words(int first, int end, Each&& each) {
   for (int x = first; x < end;) {
     const int word = x / 64, stop = end < (word + 1) * 64 ? end : (word + 1) * 64;
-    const std::uint64_t ones =
-        stop - x == 64 ? ~std::uint64_t{0} : ((std::uint64_t{1} << (stop - x)) - 1) << (x % 64);
-    each(word, ones);
+    each(word, bits_between(x - 64 * word, stop - 64 * word));
     x = stop;
   }
 }
