@@ -344,16 +344,18 @@ START_TEST(two_people_who_stand_are_a_group_before_any_height_is_known) {
 }
 END_TEST
 
-// A wall of .4 of a person's height is pushed along: a person explains less than half of the blob.
+// A wall of .4 of a person's height is pushed along, on either side: a person explains less than half of the blob.
 START_TEST(one_person_with_something_much_larger_is_a_group) {
-  RegionFinder finder = settled();
-  let_people_walk_by(finder);
-  Picture picture;
-  picture.person(150, 200);
-  picture.fill(156, 180, 256, 200);
-  const auto regions = picture.find(finder);
-  ck_assert_uint_eq(regions.size(), 1);
-  ck_assert(regions[0].kind == RegionKind::group);
+  for (const double left : {156., 44.}) {
+    RegionFinder finder = settled();
+    let_people_walk_by(finder);
+    Picture picture;
+    picture.person(150, 200);
+    picture.fill(left, 180, left + 100, 200);
+    const auto regions = picture.find(finder);
+    ck_assert_uint_eq(regions.size(), 1);
+    ck_assert(regions[0].kind == RegionKind::group);
+  }
 }
 END_TEST
 
