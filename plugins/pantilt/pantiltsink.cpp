@@ -316,7 +316,16 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
     if (type != GST_EVENT_SEGMENT || !done) return;
     ask_whether_live(self);
     const Time begin = running_time(session, sink->segment.start, {}, {}).value_or(Time::zero());
-    persist(session, [&](HeadSession::Reports& out) { return session.controller.announce(begin, out); });
+    const auto announce = [&](HeadSession::Reports& out) { return session.controller.announce(begin, out); };
+    if (!session.clock_driven) {
+      persist(session, announce);
+      return;
+    }
+    // GstBaseSrc sends a segment with a lock held that a change of state of a live source needs: nothing may wait for
+    // that here. Where the driver does not answer in time, the ticker publishes the pose.
+    HeadSession::Reports out = session.reports();
+    announce(out);
+    session.send(out);
   });
   return done;
 }
