@@ -223,14 +223,27 @@ START_TEST(a_second_picture_of_the_same_size_allocates_nothing) {
 }
 END_TEST
 
+START_TEST(the_bits_of_a_word_and_of_a_row_of_words) {
+  ck_assert_uint_eq(bits_between(0, 64), ~std::uint64_t{0});
+  ck_assert_uint_eq(bits_between(0, 1), 1);
+  ck_assert_uint_eq(bits_between(63, 64), std::uint64_t{1} << 63);
+  ck_assert_uint_eq(bits_between(4, 7), 0x70);
+  std::uint64_t row[3] = {};
+  set_bits(row, 60, 130);
+  ck_assert_uint_eq(row[0], std::uint64_t{0xf} << 60);
+  ck_assert_uint_eq(row[1], ~std::uint64_t{0});
+  ck_assert_uint_eq(row[2], 3);
+}
+END_TEST
+
 int main() {
   return run_suite_on_every_target(
       "morphology",
-      {a_mask_survives_packing_at_every_size, masks_are_spread_and_packed_as_they_are_defined,
-       binarise_is_strictly_above_the_threshold, set_algebra_follows_the_three_frames,
-       dilation_and_erosion_agree_with_the_definition, closing_fills_gaps_and_opening_drops_specks,
-       closing_never_removes_and_opening_never_adds, vote_counts_the_neighbourhood,
-       reconstruction_keeps_the_parts_that_hold_a_seed,
+      {the_bits_of_a_word_and_of_a_row_of_words, a_mask_survives_packing_at_every_size,
+       masks_are_spread_and_packed_as_they_are_defined, binarise_is_strictly_above_the_threshold,
+       set_algebra_follows_the_three_frames, dilation_and_erosion_agree_with_the_definition,
+       closing_fills_gaps_and_opening_drops_specks, closing_never_removes_and_opening_never_adds,
+       vote_counts_the_neighbourhood, reconstruction_keeps_the_parts_that_hold_a_seed,
        reconstruction_agrees_with_flooding_on_random_pictures,
        a_second_picture_of_the_same_size_allocates_nothing});
 }

@@ -3,6 +3,7 @@
 #include "vision/detection/people_kernels.h"
 
 #include <algorithm>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -43,6 +44,27 @@ START_TEST(a_body_gains_by_its_core_and_its_sides) {
 }
 END_TEST
 
+START_TEST(places_beside_one_another_gain_what_they_hold) {
+  // Two columns of foreground, 12 and 13, 8 rows high, in a band of 10 rows and of a core of one column on either side of
+  // the axis: at 13 the core holds both, at 12 and 14 the one, beyond none. Two sides of a column each.
+  std::vector<std::pair<unsigned, unsigned>> columns(26, {0, 10});
+  columns[12] = columns[13] = {8, 10};
+  const auto below = sums_of(columns),
+             above = sums_of(std::vector<std::pair<unsigned, unsigned>>(26, {0, 0}));
+  const BodyBand band{above.data(), below.data(), 1, 2, 100, -7, 30, -2};
+  std::vector<int> scores(27, 1);
+  const int none = 20 * -7 + 20 * -2, sides = 16 * 100 + 4 * -7 + 20 * -2;
+  const int beside = 8 * 100 + 12 * -7 + 8 * 30 + 12 * -2, beyond = 20 * -7 + 8 * 30 + 12 * -2;
+  ck_assert_int_eq(score_bodies(body_of(band), 2, 25, scores.data()), sides);
+  for (int x = 2; x < 25; ++x)
+    ck_assert_int_eq(scores[static_cast<std::size_t>(x)], x == 13              ? sides
+                                                          : x == 12 || x == 14 ? beside
+                                                          : x == 11 || x == 15 ? beyond
+                                                                               : none);
+  for (const std::size_t x : {0, 1, 25, 26}) ck_assert_int_eq(scores[x], 1);
+}
+END_TEST
+
 START_TEST(cells_that_are_not_counted_gain_nothing) {
   // Outside the picture, or explained by a person in front.
   const auto above = sums_of({{0, 0}, {0, 0}, {0, 0}, {0, 0}});
@@ -58,35 +80,48 @@ START_TEST(random_bodies_score_as_in_the_reference_loop_and_nothing_else_is_touc
   const auto upto = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n + 1)); };
   for (int round = 0; round < 300; ++round) {
     const int columns = 1 + upto(90), reach = upto(columns / 2);
-    // The last sum is the last readable thing.
+    // The last sum is the last readable thing. Each band has its own cells, at most as many as fit; one in four has none.
     const std::size_t bytes = (static_cast<std::size_t>(columns) + 1) * 4;
-    GuardedBytes memory(bytes), more(bytes);
-    auto* above = reinterpret_cast<std::uint32_t*>(memory.data());
-    auto* below = reinterpret_cast<std::uint32_t*>(more.data());
-    above[0] = below[0] = 0;
-    for (int c = 0; c < columns; ++c) {
-      const auto counted = static_cast<unsigned>(upto(60)), rows = static_cast<unsigned>(upto(60));
-      above[c + 1] = above[c] + random() % (counted + 1) * kMoving + counted * kCounted;
-      below[c + 1] = below[c] + (above[c + 1] - above[c]) + random() % (rows + 1) * kMoving + rows * kCounted;
-    }
+    const int most = kMostSummed / columns / 2;
+    std::vector<std::unique_ptr<GuardedBytes>> memory;
+    const auto sums = [&] {
+      return reinterpret_cast<std::uint32_t*>(
+          memory.emplace_back(std::make_unique<GuardedBytes>(bytes))->data());
+    };
     BodyBands body;
     for (BodyBand& band : body) {
+      auto *above = sums(), *below = sums();
+      above[0] = below[0] = 0;
+      for (int c = 0; c < columns; ++c) {
+        const auto counted = static_cast<unsigned>(upto(most)), rows = static_cast<unsigned>(upto(most));
+        above[c + 1] = above[c] + random() % (counted + 1) * kMoving + counted * kCounted;
+        below[c + 1] =
+            below[c] + (above[c + 1] - above[c]) + random() % (rows + 1) * kMoving + rows * kCounted;
+      }
       const int core = upto(reach);
-      band = {above,      below,           core,     core + upto(reach - core), upto(200),
-              -upto(200), upto(200) - 100, -upto(50)};
+      band = {above,
+              random() % 4 ? below : above,
+              core,
+              core + upto(reach - core),
+              upto(200),
+              -upto(200),
+              upto(200) - 100,
+              -upto(50)};
     }
     const int first = reach + upto(columns - 2 * reach), end = first + 1 + upto(columns - reach - first);
     std::vector<int> expected(static_cast<std::size_t>(columns) + 2, 77), scores = expected;
-    const int most = score_bodies_reference(body, first, end, expected.data());
-    ck_assert_int_eq(score_bodies(body, first, end, scores.data()), most);
+    const int highest = score_bodies_reference(body, first, end, expected.data());
+    ck_assert_int_eq(score_bodies(body, first, end, scores.data()), highest);
     ck_assert(scores == expected);
-    ck_assert_int_eq(most, *std::max_element(expected.begin() + first, expected.begin() + end));
+    ck_assert_int_eq(highest, *std::max_element(expected.begin() + first, expected.begin() + end));
   }
 }
 END_TEST
 
 int main() {
   return run_suite_on_every_target(
-      "people_kernels", {a_body_gains_by_its_core_and_its_sides, cells_that_are_not_counted_gain_nothing,
-                         random_bodies_score_as_in_the_reference_loop_and_nothing_else_is_touched});
+      "people_kernels",
+      {a_body_gains_by_its_core_and_its_sides, places_beside_one_another_gain_what_they_hold,
+       cells_that_are_not_counted_gain_nothing,
+       random_bodies_score_as_in_the_reference_loop_and_nothing_else_is_touched});
 }

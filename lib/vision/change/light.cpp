@@ -114,28 +114,29 @@ void LightChange::estimate(const LightSamples& samples, bool still) {
 // difference of the present picture.
 LightChange::Counts LightChange::count_differences(const LightSamples& samples) const {
   Counts counts{};
-  std::uint64_t* const all = counts[0].data();
   for (int row = 0; row < samples.rows(); ++row)
-    samples.for_each(row, light_of(row),
-                     [&](auto*, const std::uint8_t* now, const std::uint8_t* value, int n) {
-                       std::array<std::uint16_t, kSampleLanes> cell;  // all of them first, by vectors
-                       for (int i = 0; i < kSampleLanes; ++i)
-                         cell[i] = static_cast<std::uint16_t>((now[i] >> 4) * kLevels + kReach +
-                                                              std::clamp(value[i] - now[i], -kReach, kReach));
-                       for (int i = 0; i < n; ++i)
-                         all[cell[i]] += 1 | static_cast<std::uint64_t>(now[i] & 15) << 32;
-                     });
+    samples.for_each(
+        row, light_of(row), [&](auto*, const std::uint8_t* now, const std::uint8_t* value, int n) {
+          std::array<std::uint16_t, kSampleLanes> cell;  // computed for the whole array, so that vectors can
+          for (int i = 0; i < kSampleLanes; ++i)
+            cell[i] = static_cast<std::uint16_t>((now[i] >> 4) * kLevels + kReach +
+                                                 std::clamp(value[i] - now[i], -kReach, kReach));
+          for (int i = 0; i < n; ++i) counts[cell[i]] += 1 | static_cast<std::uint64_t>(now[i] & 15) << 32;
+        });
   return counts;
 }
 
 // Estimates the global change of light. Returns true if there is one.
 bool LightChange::estimate_global(const LightSamples& samples) {
   const auto counts = count_differences(samples);
+  const auto of_class = [&](int k) {
+    return std::span(counts).subspan(static_cast<std::size_t>(k) * kLevels, kLevels);
+  };
   std::array<int, kClasses> number{};
   std::array<std::int64_t, kClasses> sum{};
   for (int k = 0; k < kClasses; ++k) {
     std::uint64_t all = 0;
-    for (const std::uint64_t count : counts[k]) all += count;
+    for (const std::uint64_t count : of_class(k)) all += count;
     number[k] = static_cast<int>(all & 0xffffffffu);
     sum[k] = std::int64_t{16} * k * number[k] + static_cast<std::int64_t>(all >> 32);
   }
@@ -152,7 +153,7 @@ bool LightChange::estimate_global(const LightSamples& samples) {
   for (int k = 0; k < kClasses; ++k) {
     if (number[k] * p.least_class < total) continue;
     const double a = static_cast<double>(sum[k]) / number[k],
-                 e = median_of_levels(counts[k], number[k], -kReach);
+                 e = median_of_levels(of_class(k), number[k], -kReach);
     if (a + e > kNearWhite || a + e < p.clipped || a > kNearWhite)
       continue;  // clipped: no information about the gain
     points[used++] = {a, e, static_cast<double>(number[k])};
@@ -187,7 +188,7 @@ bool LightChange::estimate_global(const LightSamples& samples) {
     const double a = static_cast<double>(sum[k]) / number[k];
     const int e = static_cast<int>(std::lround(std::clamp(a + at_zero + slope * a, 0.0, 255.0) - a));
     for (int d = std::max(e - p.agrees, -kReach); d <= std::min(e + p.agrees, kReach); ++d)
-      agree += static_cast<int>(counts[k][d + kReach]);
+      agree += static_cast<int>(of_class(k)[static_cast<std::size_t>(d + kReach)]);
   }
   agreement_ = static_cast<double>(agree) / total;
   // A change that is small from dark grey to light grey is not compensated.

@@ -48,7 +48,7 @@ class LightChange {
   double excess_of_band(const LightSamples& samples, int band) const;
   // Lower half: number of samples; upper half: the sum of their levels' lower 4 bits, so that one addition counts both.
   // 32 bits each: a sixteenth of 3840 x 2160 pixels may all be alike.
-  using Counts = std::array<std::array<std::uint64_t, kLevels>, kClasses>;
+  using Counts = std::array<std::uint64_t, kClasses * kLevels>;  // by class, then by difference
   Counts count_differences(const LightSamples& samples) const;
   RowLight light_of(int row) const;  // of samples
 

@@ -15,9 +15,9 @@ HWY_BEFORE_NAMESPACE();
 namespace cerberus::vision::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// (level * gain + offset + 128) >> 8 from its high and low bytes, so that 16 bits hold all: plain loops, compiled once
-// per target; compilers vectorise them as well as intrinsics would. A gain below 80 and an offset of less than
-// 10000 levels keep them safe.
+// (level * gain + offset + 128) >> 8 from its high and low bytes, so that 16 bits hold all. A gain below 80 and an offset
+// of less than 10000 levels keep them safe. Rows are relit by plain loops, compiled once per target, which compilers
+// vectorise as well as intrinsics would; samples, of which one vector holds all, without going through memory.
 struct Relit {
   std::uint16_t gain_low, offset_low;
   std::int16_t gain_high, offset_high;
@@ -137,10 +137,10 @@ void find_gains(const std::uint8_t* reference, const std::uint8_t* now, const st
     const auto load = [&](const std::uint8_t* p)
                           HWY_ATTR { return hn::PromoteTo(d, hn::LoadU(bytes, p + i)); };
     const auto level = load(now);
-    // The quotient of such small integers is exact where it is whole, and else farther from the next one than its
-    // rounding.
+    // The quotient's whole part, with half a unit added to the dividend, which leaves it as it is, so that division need not
+    // round correctly.
     const auto divisor = hn::ConvertTo(floats, hn::Max(level, hn::Set(d, 1)));
-    const auto half = hn::ConvertTo(d, hn::Div(hn::Set(floats, SampleGains::kHalfLevel), divisor));
+    const auto half = hn::ConvertTo(d, hn::Div(hn::Set(floats, SampleGains::kHalfLevel + 0.5f), divisor));
     const auto middle = hn::Mul(hn::ShiftLeft<1>(hn::Sub(load(present), level)), half);
     const auto index = [&](auto gain) HWY_ATTR {
       const auto limited = hn::Max(hn::Min(hn::ShiftRight<8>(gain), reach), hn::Neg(reach));
@@ -259,7 +259,7 @@ void find_gains_reference(const std::uint8_t* reference, const std::uint8_t* now
                           SampleGains& gains) {
   constexpr int kReach = SampleGains::kReach;
   for (std::size_t i = 0; i < kSampleLanes; ++i) {
-    const int half = static_cast<int>(SampleGains::kHalfLevel) / std::max<int>(now[i], 1);
+    const int half = SampleGains::kHalfLevel / std::max<int>(now[i], 1);
     const auto index = [&](int halves) {
       return static_cast<std::uint8_t>(std::clamp((halves * half) >> 8, -kReach, kReach) + kReach);
     };

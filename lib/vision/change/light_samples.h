@@ -32,8 +32,8 @@ class LightSamples {
   // Statistics of the band's samples under the lights of the picture's rows.
   LightSums sums_of_band(int band, std::span<const RowLight> lights) const;
   int first_row(int band) const { return std::min(band * kBandRows, rows()); }
-  // Calls each(reference, the same under the light, present, number) for a row's samples, at most kSampleLanes at once,
-  // of which the arrays have room for all.
+  // Calls each(reference, the same under the light, present, number) for a row's samples, at most kSampleLanes at once. So
+  // many can be read from each of the three; what stands from `number` on means nothing.
   template <typename Each>
   void for_each(int row, RowLight light, Each&& each) const {
     const std::uint8_t *a = reference_.data() + start_of(row), *b = present_.data() + start_of(row);

@@ -21,7 +21,8 @@ class RestingGhosts {
 
   void preallocate(Size picture) { resting_.resize(bit_mask_size(picture)); }
   // Takes the ghosts from `mask`, the foreground before a camera that stands, and adds them to `absorb`, the pixels that
-  // the background model takes over. rested: frames without motion, at least one, from which on a pixel rests. labeller: scratch memory.
+  // the background model takes over. rested: frames without motion, at least one, from which on a pixel rests. labeller:
+  // scratch memory.
   void remove(const Pictures& pictures, int rested, Labeller& labeller, MutableBitView mask,
               MutableBitView absorb);
   std::size_t bytes() const { return resting_.bytes(); }

@@ -18,7 +18,8 @@ namespace cerberus::vision {
 namespace {
 
 constexpr int kUnit = 64;         // of the logarithms
-constexpr int kMostCells = 8192;  // in a grid with its sums; both packed sums stay below 65536
+constexpr int kMostCells = 8192;  // in a grid with its sums
+static_assert(kMostCells <= kMostSummed);
 
 // Halves away from 0. Inline, unlike std::lround().
 int whole(double value) {
@@ -237,8 +238,9 @@ void PeopleFinder::try_row(int foot, const Scale& scale, int from, int to, int a
     return anchor >= 0 && left > anchor ? (moving_before(left) - moving_before(anchor)) * dearest : 0;
   };
   if (anchor >= 0) {
-    for (int x = first; x < end; ++x) scores_[static_cast<std::size_t>(x)] -= lost(x);
-    most = *std::max_element(scores_.begin() + first, scores_.begin() + end) - cost;
+    most = INT_MIN;
+    for (int x = first; x < end; ++x)
+      most = std::max(most, (scores_[static_cast<std::size_t>(x)] -= lost(x)) - cost);
     if (most <= least) return;
   }
   const auto at = std::find(scores_.begin() + first, scores_.begin() + end, most + cost);
@@ -348,6 +350,7 @@ void PeopleFinder::settle() {
 // Share of the cells in the chosen boxes that are foreground.
 double PeopleFinder::filled() {
   clear_explained();
+  explained_from_ = 0;
   int moving = 0, all = 0;
   for (const Candidate& c : chosen_)
     for (int r = c.top; r < c.bottom; ++r)

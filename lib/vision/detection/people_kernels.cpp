@@ -13,9 +13,31 @@ HWY_BEFORE_NAMESPACE();
 namespace cerberus::vision::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+// Scores one column after the other: fewer than a vector has.
+int score_few(const BodyBands& body, int first, int end, int* scores) {
+  int most = hwy::LowestValue<std::int32_t>();
+  for (int x = first; x < end; ++x) {
+    int score = 0;
+    for (const BodyBand& band : body) {
+      const auto gain = [&](int reach, int moving, int still) {
+        const std::uint32_t cells =
+            (band.below[x + reach] - band.below[x - reach]) - (band.above[x + reach] - band.above[x - reach]);
+        const int foreground = static_cast<int>(cells & 0xffff), all = static_cast<int>(cells >> 16);
+        return foreground * moving + (all - foreground) * still;
+      };
+      // Every cell as one at the side, and what one of the core gains more.
+      score += gain(band.reach, band.side_moving, band.side_still) +
+               gain(band.core, band.core_moving - band.side_moving, band.core_still - band.side_still);
+    }
+    scores[x] = score;
+    most = std::max(most, score);
+  }
+  return most;
+}
+
 #if HWY_TARGET == HWY_SCALAR
 int score_bodies(const BodyBands& body, int first, int end, int* scores) {
-  return score_bodies_reference(body, first, end, scores);
+  return score_few(body, first, end, scores);
 }
 #else
 
@@ -67,7 +89,7 @@ HWY_INLINE int score_row(D d, const BodyBands& body, const std::uint32_t* core_f
 int score_bodies(const BodyBands& body, int first, int end, int* scores) {
   const hn::CappedTag<std::int32_t, 8> d;
   const hn::CappedTag<std::int32_t, 4> few;
-  if (end - first < static_cast<int>(hn::Lanes(few))) return score_bodies_reference(body, first, end, scores);
+  if (end - first < static_cast<int>(hn::Lanes(few))) return score_few(body, first, end, scores);
   std::uint32_t core[kBodyBands], side[kBodyBands];
   for (std::size_t i = 0; i < kBodyBands; ++i) {
     core[i] = factors(body[i].core_moving, body[i].core_still);
@@ -91,20 +113,18 @@ int score_bodies(const BodyBands& body, int first, int end, int* scores) {
   return HWY_DYNAMIC_DISPATCH(score_bodies)(body, first, end, scores);
 }
 
+// One cell column after the other.
 int score_bodies_reference(const BodyBands& body, int first, int end, int* scores) {
   for (int x = first; x < end; ++x) {
     scores[x] = 0;
-    for (const BodyBand& band : body) {
-      const auto gain = [&](int reach, int moving, int still) {
-        const std::uint32_t cells =
-            (band.below[x + reach] - band.below[x - reach]) - (band.above[x + reach] - band.above[x - reach]);
-        const int foreground = static_cast<int>(cells & 0xffff), all = static_cast<int>(cells >> 16);
-        return foreground * moving + (all - foreground) * still;
-      };
-      // All as those beside the core, and the core what it gains more.
-      scores[x] += gain(band.reach, band.side_moving, band.side_still) +
-                   gain(band.core, band.core_moving - band.side_moving, band.core_still - band.side_still);
-    }
+    for (const BodyBand& band : body)
+      for (int c = x - band.reach; c < x + band.reach; ++c) {
+        const std::uint32_t cells = (band.below[c + 1] - band.below[c]) - (band.above[c + 1] - band.above[c]);
+        const int moving = static_cast<int>(cells & 0xffff), still = static_cast<int>(cells >> 16) - moving;
+        const bool core = c >= x - band.core && c < x + band.core;
+        scores[x] += moving * (core ? band.core_moving : band.side_moving) +
+                     still * (core ? band.core_still : band.side_still);
+      }
   }
   return *std::max_element(scores + first, scores + end);
 }

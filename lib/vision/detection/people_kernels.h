@@ -8,13 +8,14 @@
 
 namespace cerberus::vision {
 
-// Sums over cells carry two numbers: foreground in the lower 16 bits, counted at all in the upper. Sums of up to 65535
-// cells, and differences of sums, are exact in both halves.
+// Sums over cells carry two numbers: foreground in the lower 16 bits, counted at all in the upper. Both, and differences
+// of sums, are exact for so many cells.
 constexpr std::uint32_t kCounted = 0x10000, kMoving = 1;
+constexpr int kMostSummed = 32767;
 
 // Rows of cells that a part of a body takes (head, trunk, legs), and what its cells gain: those within `core` columns
-// of the axis, and those from there up to `reach`. Gains in 1/64, of a cell that is foreground and of one that is not;
-// they and the number of cells fit into 16 bits with a sign.
+// of the axis, and those from there up to `reach`. Gains in 1/64, of a cell that is foreground and of one that is not; they
+// and their difference fit into 16 bits with a sign.
 struct BodyBand {
   const std::uint32_t* above = nullptr;  // above[x]: sum of all cells above the band and left of column x
   const std::uint32_t* below = nullptr;  // the same at the band's lower end

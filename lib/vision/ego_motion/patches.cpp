@@ -93,7 +93,7 @@ void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t
           const double a = window(0), b = window(1), c = window(2);
           // Not even an ideal corner with so much gradient would be a better one.
           const double half = 0.5 * (a + c);
-          if (half * (1 + q.edge) <= best) continue;
+          if (half + q.edge * half <= best) continue;
           const double spread = std::sqrt(0.25 * (a - c) * (a - c) + b * b);
           const double large = half + spread, small = half - spread;
           if (large < least) continue;
