@@ -241,9 +241,6 @@ void round_row(const std::uint16_t* mean, int width, std::uint8_t* out) {
 
 namespace {
 
-bool bit(const std::uint64_t* row, int x) {
-  return row[x / 64] >> (x % 64) & 1;
-}
 void set_bit(std::uint64_t* row, int x, bool on) {
   const std::uint64_t mask = std::uint64_t{1} << (x % 64);
   row[x / 64] = on ? row[x / 64] | mask : row[x / 64] & ~mask;
@@ -277,7 +274,7 @@ void compare_row_reference(const CompareRow& row, const CompareLimits& limits, s
     const int s = std::max<int>(limits.noise[m / 16], row.spread[x] + row.spread[x] / 4);
     const int weak_limit = std::max(limits.weak_least, limits.weak_sigmas * s);
     const int strong_limit = std::max(limits.strong_least, limits.strong_sigmas * s);
-    const bool moved = bit(row.moved, x);
+    const bool moved = bit_at(row.moved, x);
     const bool unsure = row.age[x] < limits.young;
     set_bit(weak, x, unsure ? moved : e > weak_limit + edge || (moved && e > weak_limit));
     set_bit(strong, x, unsure ? moved && (!limits.registered || e > edge) : e > strong_limit + edge);
@@ -287,16 +284,16 @@ void compare_row_reference(const CompareRow& row, const CompareLimits& limits, s
 
 void learn_row_reference(const LearnRow& row) {
   for (int x = 0; x < row.width; ++x) {
-    if (!bit(row.valid, x)) continue;
+    if (!bit_at(row.valid, x)) continue;
     const int f = row.frame[x], age = row.age[x];
-    if (age == 0 || bit(row.absorb, x)) {
+    if (age == 0 || bit_at(row.absorb, x)) {
       row.mean[x] = static_cast<std::uint16_t>(row.taken[x] << 8);
       row.spread[x] = 16;
       row.age[x] =
           static_cast<std::uint8_t>(age == 0 ? 1 : std::max(2, std::min<int>(age, row.quiet[x]) / 2));
       continue;
     }
-    if (bit(row.keep, x)) continue;
+    if (bit_at(row.keep, x)) continue;
     const int e = f - row.background[x], size = std::abs(e);
     const int rate = age < 16 ? kYoungRate[age] : kOldRate[age / 16];
     row.mean[x] = static_cast<std::uint16_t>(

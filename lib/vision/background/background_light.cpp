@@ -152,7 +152,7 @@ void BackgroundLight::suppress_step(const BackgroundPixels& pixels, GrayView fra
     std::uint8_t* m = k.row(y);
     std::uint8_t* a = pixels.age.row(y);
     for (int x = 0; x < k.width; ++x) {
-      const bool free = !(there[x / 64] >> (x % 64) & 1);
+      const bool free = !bit_at(there, x);
       if (!free || std::abs(f[x] - m[x]) <= kParameters.noise * sigma[m[x] >> 4]) continue;
       pixels.mean.at(x, y) = static_cast<std::uint16_t>(taken[x] << 8);
       m[x] = f[x];

@@ -115,7 +115,7 @@ void ForegroundClassification::measure_noise(const ClassificationInput& in, BitV
     for (int x = span.begin + in.frames / p.noise_step % p.noise_step; x < span.end; x += p.noise_step) {
       if (start)
         samples.add(in.picture.at(x, y), in.difference.at(x, y));
-      else if (age[x] > p.noise_age && !(now[x / 64] >> (x % 64) & 1))
+      else if (age[x] > p.noise_age && !bit_at(now, x))
         samples.add(b[x], std::abs(f[x] - b[x]));
     }
   }

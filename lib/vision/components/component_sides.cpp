@@ -92,7 +92,7 @@ bool sides_go_on(GrayView frame, BitView mask, std::span<const Run> runs, std::s
     const auto is_edge = [&](int x, int from, int to) {
       Contrast beyond;
       for (int y = std::max(from, 0); y < std::min(to, frame.height); ++y)
-        if (x < frame.width && !(mask.row(y)[x / 64] >> (x % 64) & 1)) beyond.add(frame, x, y, right);
+        if (x < frame.width && !bit_at(mask.row(y), x)) beyond.add(frame, x, y, right);
       return beyond.rows > 0 && beyond.mean() >= p.goes_on * side.mean();
     };
     return is_edge(first_column, top - reach, top) || is_edge(last_column, bottom, bottom + reach);

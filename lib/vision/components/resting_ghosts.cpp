@@ -26,10 +26,6 @@ struct Outline {                  // of one component, its left and right sides
   int frame = 0, background = 0;  // ... and the sums of their contrasts, grey levels
 };
 
-bool is_set(BitView mask, int x, int y) {
-  return mask.row(y)[x / 64] >> (x % 64) & 1;
-}
-
 }  // namespace
 
 void RestingGhosts::remove(const Pictures& pictures, int rested, Labeller& labeller, MutableBitView mask,
@@ -46,7 +42,7 @@ void RestingGhosts::remove(const Pictures& pictures, int rested, Labeller& label
     Outline& outline = outlines[r.component];
     const auto look = [&](int out, int in) {
       ++outline.pixels;
-      if (std::min(out, in) < 0 || std::max(out, in) >= f.width || is_set(mask, out, r.row)) return;
+      if (std::min(out, in) < 0 || std::max(out, in) >= f.width || bit_at(mask.row(r.row), out)) return;
       ++outline.seen;
       outline.frame += std::abs(f.at(out, r.row) - f.at(in, r.row));
       outline.background += std::abs(b.at(out, r.row) - b.at(in, r.row));

@@ -45,7 +45,7 @@ int OutlineFinder::leg(const Component& c, int first, int step, int most, BitVie
     const int x = first + step * k;
     int top = c.bottom, filled = 0;
     for (int y = c.bottom; y-- > zone;)
-      if (moving.row(y)[x / 64] >> (x % 64) & 1) top = y, ++filled;
+      if (bit_at(moving.row(y), x)) top = y, ++filled;
     if (filled < least) break;
     if (k == 0) knee = top;
     if (top > lowest) lowest = top, fallen = k + 1;

@@ -3,6 +3,7 @@
 // a whole picture take a few microseconds.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 
@@ -25,6 +26,12 @@ inline std::uint64_t last_word_bits(int width) {
   return width % 64 ? (std::uint64_t{1} << (width % 64)) - 1 : ~std::uint64_t{0};
 }
 
+// Whether pixel x of a row is set.
+inline bool bit_at(const std::uint64_t* row, int x) {
+  const auto at = static_cast<unsigned>(x);
+  return row[at / 64] >> (at % 64) & 1;
+}
+
 // The bits first..end-1 of a word, 0 <= first < end <= 64.
 inline std::uint64_t bits_between(int first, int end) {
   return ~std::uint64_t{0} >> (64 - (end - first)) << first;
@@ -34,7 +41,7 @@ inline std::uint64_t bits_between(int first, int end) {
 template <typename Each>
 void for_words(int first, int end, Each&& each) {
   for (int x = first; x < end;) {
-    const int word = x / 64, stop = end < (word + 1) * 64 ? end : (word + 1) * 64;
+    const int word = static_cast<int>(static_cast<unsigned>(x) / 64), stop = std::min(end, 64 * word + 64);
     each(word, bits_between(x - 64 * word, stop - 64 * word));
     x = stop;
   }
