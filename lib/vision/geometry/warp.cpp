@@ -190,14 +190,6 @@ auto bilinear_sampler(GrayView source) {
   };
 }
 
-auto nearest_sampler(GrayView source) {
-  return [source](const std::int32_t* u, const std::int32_t* v, int count, std::uint8_t* out) {
-    constexpr int kHalfPixel = 1 << (kPositionBits - 1);
-    for (int i = 0; i < count; ++i)
-      out[i] = source.at((u[i] + kHalfPixel) >> kPositionBits, (v[i] + kHalfPixel) >> kPositionBits);
-  };
-}
-
 }  // namespace
 
 void Warp::bilinear(GrayView source, MutableGrayView target, std::uint8_t fill) {
@@ -205,7 +197,10 @@ void Warp::bilinear(GrayView source, MutableGrayView target, std::uint8_t fill) 
 }
 
 void Warp::nearest(GrayView source, MutableGrayView target, std::uint8_t fill) {
-  draw(source, target, fill, nearest_sampler(source));
+  draw(source, target, fill,
+       [source](const std::int32_t* u, const std::int32_t* v, int count, std::uint8_t* out) {
+         sample_nearest(source, u, v, count, out);
+       });
 }
 
 void warp_bilinear_reference(const Transform& motion, GrayView source, MutableGrayView target,

@@ -131,6 +131,27 @@ void sample_bilinear(GrayView source, const std::int32_t* x, const std::int32_t*
   for (; i < count; ++i) sample_vector(one, source, x + i, y + i, out + i);
 }
 
+void sample_nearest(GrayView source, const std::int32_t* x, const std::int32_t* y, int count,
+                    std::uint8_t* out) {
+  const hn::CappedTag<std::int32_t, 16> d;
+  const hn::Rebind<std::uint8_t, decltype(d)> dt;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const auto whole = [&](const std::int32_t* p)
+                         HWY_ATTR { return hn::ShiftRight<7>(hn::Add(hn::LoadU(d, p), hn::Set(d, 64))); };
+  int i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    const auto ix = whole(x + i), iy = whole(y + i);
+    const int x0 = hn::GetLane(ix), y0 = hn::GetLane(iy);
+    const auto beside = hn::Eq(ix, hn::Add(hn::Iota(d, 0), hn::Set(d, x0)));
+    if (hn::AllTrue(d, hn::And(beside, hn::Eq(iy, hn::Set(d, y0))))) {
+      hn::StoreU(hn::LoadU(dt, &source.at(x0, y0)), dt, out + i);
+      continue;
+    }
+    for (int k = i; k < i + lanes; ++k) out[k] = source.at((x[k] + 64) >> 7, (y[k] + 64) >> 7);
+  }
+  for (; i < count; ++i) out[i] = source.at((x[i] + 64) >> 7, (y[i] + 64) >> 7);
+}
+
 }  // namespace cerberus::vision::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -140,6 +161,7 @@ namespace cerberus::vision {
 HWY_EXPORT(step_positions);
 HWY_EXPORT(project_positions);
 HWY_EXPORT(sample_bilinear);
+HWY_EXPORT(sample_nearest);
 
 void step_positions(std::int32_t start, std::int32_t step, int shift, int count, std::int32_t* out) {
   HWY_DYNAMIC_DISPATCH(step_positions)(start, step, shift, count, out);
@@ -153,6 +175,11 @@ void project_positions(const float (&m)[9], int x0, int y, int count, std::int32
 void sample_bilinear(GrayView source, const std::int32_t* x, const std::int32_t* y, int count,
                      std::uint8_t* out) {
   HWY_DYNAMIC_DISPATCH(sample_bilinear)(source, x, y, count, out);
+}
+
+void sample_nearest(GrayView source, const std::int32_t* x, const std::int32_t* y, int count,
+                    std::uint8_t* out) {
+  HWY_DYNAMIC_DISPATCH(sample_nearest)(source, x, y, count, out);
 }
 
 }  // namespace cerberus::vision

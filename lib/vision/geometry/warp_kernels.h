@@ -20,5 +20,8 @@ void project_positions(const float (&m)[9], int x0, int y, int count, std::int32
 // 0 <= x[i] <= 128 (width - 1), the same for y; the source is at least 2 x 2.
 void sample_bilinear(GrayView source, const std::int32_t* x, const std::int32_t* y, int count,
                      std::uint8_t* out);
+// The same of the nearest pixel; the source may be of any size.
+void sample_nearest(GrayView source, const std::int32_t* x, const std::int32_t* y, int count,
+                    std::uint8_t* out);
 
 }  // namespace cerberus::vision
