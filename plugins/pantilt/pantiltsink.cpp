@@ -101,6 +101,7 @@
 #include "shared/camera_mount.hpp"
 #include "shared/camera_path.hpp"
 #include "shared/complaint.hpp"
+#include "shared/confirm_playing.hpp"
 #include "shared/times.hpp"
 #include "shared/tracks.hpp"
 
@@ -267,28 +268,6 @@ GstFlowReturn cerberus_pan_tilt_sink_render(GstBaseSink* sink, GstBuffer* buffer
     Private& self = *cerberus_pan_tilt_sink_self(sink)->priv;
     return on_frame(self, buffer, GST_BUFFER_PTS(buffer), GST_BUFFER_DURATION(buffer));
   });
-}
-
-// True: the bin around the sink plays, and no other state is on the way.
-bool bin_plays(GstObject* bin) {
-  GST_OBJECT_LOCK(bin);
-  const bool plays = GST_STATE(bin) == GST_STATE_PLAYING && GST_STATE_PENDING(bin) == GST_STATE_VOID_PENDING;
-  GST_OBJECT_UNLOCK(bin);
-  return plays;
-}
-
-// GstBin forwards the end of the stream only if PLAYING was the last state that it posted. Where an element completes
-// READY to PAUSED in a streaming thread (decodebin), that thread posts PAUSED; the application, which reads it at once,
-// sets PLAYING before the thread notes that PAUSED was posted; and the end is never forwarded (GStreamer 1.22). Sinks
-// with async=true escape by their preroll lock. Here the bins post PLAYING once more before the end.
-void confirm_playing(GstElement* element) {
-  g_autoptr(GstObject) bin = gst_object_get_parent(GST_OBJECT(element));
-  if (!bin || !GST_IS_BIN(bin)) return;
-  confirm_playing(GST_ELEMENT(bin));
-  if (bin_plays(bin))
-    gst_element_post_message(
-        GST_ELEMENT(bin),
-        gst_message_new_state_changed(bin, GST_STATE_PLAYING, GST_STATE_PLAYING, GST_STATE_VOID_PENDING));
 }
 
 gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {

@@ -86,6 +86,7 @@
 #include "playing_gate.hpp"
 #include "session.hpp"
 #include "shared/clock_times.hpp"
+#include "shared/confirm_playing.hpp"
 
 namespace {
 
@@ -200,6 +201,7 @@ void take_eos(CerberusEventRecorder* self, GstPad* pad, GstEvent* event) {
   self->priv->session.when_done([self, number] {
     GstMessage* message = gst_message_new_eos(GST_OBJECT(self));
     gst_message_set_seqnum(message, number);
+    plugin::confirm_playing(GST_ELEMENT(self));
     gst_element_post_message(GST_ELEMENT(self), message);
   });
 }

@@ -227,6 +227,37 @@ GST_START_TEST(stopping_without_end_of_stream_completes_the_file) {
 }
 GST_END_TEST
 
+// A bin takes PAUSED for its last state where the thread of a decoder that posted it goes on after the application has set
+// PLAYING; here it is told so.
+GST_START_TEST(the_end_reaches_the_application_of_a_bin_that_has_forgotten_that_it_plays) {
+  const Folder folder;
+  const std::string line =
+      "appsrc name=src format=time caps=video/x-raw,format=GRAY8,width=64,height=48,framerate=25/1 ! "
+      "jpegenc ! eventrecorder location=" +
+      folder.path();
+  GstElement* pipeline = gst_parse_launch(line.c_str(), nullptr);
+  gst_element_set_state(pipeline, GST_STATE_PLAYING);
+  g_autoptr(GstElement) source = gst_bin_get_by_name(GST_BIN(pipeline), "src");
+  g_autoptr(GstBuffer) buffer = gst_buffer_new_allocate(nullptr, 64 * 48, nullptr);
+  gst_buffer_memset(buffer, 0, 0, 64 * 48);
+  GST_BUFFER_PTS(buffer) = 0;
+  GstFlowReturn flow = GST_FLOW_ERROR;
+  g_signal_emit_by_name(source, "push-buffer", buffer, &flow);
+  fail_unless_equals_int(flow, GST_FLOW_OK);
+  fail_unless_equals_int(gst_element_get_state(pipeline, nullptr, nullptr, 10 * GST_SECOND),
+                         GST_STATE_CHANGE_SUCCESS);
+  gst_element_post_message(pipeline, gst_message_new_state_changed(GST_OBJECT(pipeline), GST_STATE_READY,
+                                                                   GST_STATE_PAUSED, GST_STATE_VOID_PENDING));
+  g_signal_emit_by_name(source, "end-of-stream", &flow);
+  g_autoptr(GstBus) bus = gst_element_get_bus(pipeline);
+  g_autoptr(GstMessage) end = gst_bus_timed_pop_filtered(
+      bus, 10 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+  gst_element_set_state(pipeline, GST_STATE_NULL);
+  gst_object_unref(pipeline);
+  fail_unless(end && GST_MESSAGE_TYPE(end) == GST_MESSAGE_EOS);
+}
+GST_END_TEST
+
 GST_START_TEST(the_element_records_again_after_it_was_stopped) {
   Rig rig;
   for (int round = 0; round < 2; ++round) {
@@ -509,6 +540,7 @@ static Suite* eventrecorder_suite() {
   tcase_add_test(tests, the_pre_roll_is_on_disk_before_another_frame_comes);
   tcase_add_test(tests, a_file_that_is_never_closed_plays_up_to_its_last_second);
   tcase_add_test(tests, stopping_without_end_of_stream_completes_the_file);
+  tcase_add_test(tests, the_end_reaches_the_application_of_a_bin_that_has_forgotten_that_it_plays);
   tcase_add_test(tests, the_element_records_again_after_it_was_stopped);
   tcase_add_test(tests, stamps_that_begin_at_1000_hours_and_b_frames_become_times_from_zero);
   tcase_add_test(tests, jpeg_is_recorded_into_matroska);
