@@ -49,7 +49,8 @@ class HeadController {
   void set_clock_driven(bool on);
   // Clears the frames and the end of the stream (a flush): the next frame begins anew.
   void forget();
-  // Publishes the pose at the start, which is valid until the head's latency has passed. interrupted: call again.
+  // Publishes the pose at the start, which is valid until the head's latency has passed. interrupted: nothing was published;
+  // call again, unless tick() follows.
   Answer announce(Time running, DeferredNotifications& out);
 
   struct Frame {

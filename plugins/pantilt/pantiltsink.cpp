@@ -43,6 +43,7 @@
  * command continues after PAUSED, but not after the end of the stream, nor when frames came and stay away for
  * `watchdog-timeout`: then the head stands until the next command or `auto`. At the end of the stream `move-to`,
  * `move-by`, `home` and `follow` are refused until a flush; before the first frame a manual command is executed.
+ * The bins around the element may post PLAYING once more before the end of the stream.
  * Driver calls are made on a thread of their own; a driver that blocks delays no change of state by more than 100 ms. A
  * driver that cannot be opened is an error, however late that is found, and in PAUSED too; one that fails later is a
  * warning and the state `fault`, until it answers again: the video goes on.
@@ -125,7 +126,7 @@ struct State {  // streaming thread only
   vision::CameraFollower camera;      // since the last frame
   std::optional<Time> taken;          // running time of the last frame that repeats none
   bool began_late = false;            // the stream, after the sink was set to PLAYING
-  bool live_known = false;            // whether upstream is live was asked
+  bool live_known = false;            // whether upstream is live
 };
 
 struct Private {
@@ -167,11 +168,14 @@ gboolean cerberus_pan_tilt_sink_propose_allocation(GstBaseSink*, GstQuery* query
   return TRUE;
 }
 
-// Whether the stream is live decides what drives the head's time; known upstream when the stream begins.
+// Whether the stream is live decides what drives the head's time; known upstream when the stream begins, mostly. Without
+// an answer it is taken for not live, and asked again with the next frame.
 void ask_whether_live(Private& self) {
-  if (std::exchange(self.state.live_known, true)) return;
+  if (self.state.live_known) return;
   HeadSession& session = self.session;
-  session.set_live(is_live(GST_BASE_SINK_PAD(session.sink)).value_or(false));
+  const auto live = is_live(GST_BASE_SINK_PAD(session.sink));
+  self.state.live_known = live.has_value();
+  if (live) session.set_live(*live);
 }
 
 // The driver's answer is awaited with the base class's preroll lock held, which a change of state needs: a change of
@@ -296,12 +300,13 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
     ask_whether_live(self);
     const Time begin = running_time(session, sink->segment.start, {}, {}).value_or(Time::zero());
     const auto announce = [&](HeadSession::Reports& out) { return session.controller.announce(begin, out); };
-    if (!session.clock_driven) {
+    if (self.state.live_known && !session.clock_driven) {
       persist(session, announce);
       return;
     }
     // GstBaseSrc sends a segment with a lock held that a change of state of a live source needs: nothing may wait for
-    // that here. Where the driver does not answer in time, the ticker publishes the pose.
+    // that here. Where a change of state interrupts the driver's answer nothing is published; the ticker does it once the
+    // head plays.
     HeadSession::Reports out = session.reports();
     announce(out);
     session.send(out);

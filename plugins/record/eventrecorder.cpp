@@ -52,6 +52,9 @@
  * the start. Retention deletes file, lines, picture and row together, by `retention-age`, `retention-size` and
  * `retention-free`, unless `keep` is set. Files that the index does not name are never deleted.
  *
+ * The end of the stream is posted when the files are complete, and once more when a pause ends. The bins around the element
+ * may post PLAYING once more before it.
+ *
  * Writing has a thread of its own. A live stream never waits for the disk: where more than 64 MiB wait, the file is given
  * up and a warning posted. A stream that is not live waits. Where a file cannot be written (disk full, folder gone)
  * a warning names it, the stream goes on, and every 5 s another file is tried, from the frames that no file has yet. If
@@ -86,7 +89,7 @@
 #include "playing_gate.hpp"
 #include "session.hpp"
 #include "shared/clock_times.hpp"
-#include "shared/confirm_playing.hpp"
+#include "stream_end.hpp"
 
 namespace {
 
@@ -113,6 +116,7 @@ GstStaticPadTemplate analysis_template =
 struct Private {
   plugin::Adjustable<plugin::RecorderSettings> settings;
   plugin::PlayingGate gate;
+  plugin::StreamEnd end;
   plugin::Session session{settings};
 };
 
@@ -198,12 +202,7 @@ void take_eos(CerberusEventRecorder* self, GstPad* pad, GstEvent* event) {
   self->priv->gate.has_data(GST_ELEMENT(self));
   if (!self->priv->session.end_of_stream(input_of(pad))) return;
   const guint32 number = gst_event_get_seqnum(event);
-  self->priv->session.when_done([self, number] {
-    GstMessage* message = gst_message_new_eos(GST_OBJECT(self));
-    gst_message_set_seqnum(message, number);
-    plugin::confirm_playing(GST_ELEMENT(self));
-    gst_element_post_message(GST_ELEMENT(self), message);
-  });
+  self->priv->session.when_done([self, number] { self->priv->end.post(GST_ELEMENT(self), number); });
 }
 
 gboolean cerberus_event_recorder_event(GstPad* pad, GstObject* parent, GstEvent* event) {
@@ -221,12 +220,14 @@ gboolean cerberus_event_recorder_event(GstPad* pad, GstObject* parent, GstEvent*
         return TRUE;
       case GST_EVENT_FLUSH_STOP:
         session.flush(input_of(pad));
+        self->priv->end.forget();
         return TRUE;
       case GST_EVENT_GAP:
         session.gap(input_of(pad), event);
         return TRUE;
       case GST_EVENT_STREAM_START:
         session.begin_stream(input_of(pad));
+        self->priv->end.forget();
         return TRUE;
       case GST_EVENT_CUSTOM_DOWNSTREAM_OOB:
         session.handle(event);
@@ -322,13 +323,17 @@ GstStateChangeReturn cerberus_event_recorder_change_state(GstElement* element, G
       if (!check_settings(self) || !begin(self)) return GST_STATE_CHANGE_FAILURE;
       priv.gate.await_data(element);
     }
-    if (transition == GST_STATE_CHANGE_PAUSED_TO_PLAYING) priv.gate.begin_playing();
+    if (transition == GST_STATE_CHANGE_PAUSED_TO_PLAYING) {
+      priv.end.repeat(element);
+      priv.gate.begin_playing();
+    }
     if (transition == GST_STATE_CHANGE_PLAYING_TO_PAUSED) priv.gate.end_playing();
     auto result =
         GST_ELEMENT_CLASS(cerberus_event_recorder_parent_class())->change_state(element, transition);
     if (up && result == GST_STATE_CHANGE_SUCCESS) result = GST_STATE_CHANGE_ASYNC;
     if (up && result == GST_STATE_CHANGE_FAILURE) priv.session.end();
     if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
+      priv.end.forget();
       priv.gate.stop_awaiting(element);
       priv.session.end();
     }

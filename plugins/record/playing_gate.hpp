@@ -31,7 +31,7 @@ class PlayingGate {
   std::atomic<bool> awaits_data_ = false;
   // Held while PAUSED is reported, and taken on the way to PLAYING: a bin may otherwise forget that it plays, and never
   // post EOS (the thread that reports PAUSED goes on after the application has set PLAYING; seen on 1.22 on a busy
-  // machine).
+  // machine). Where an element upstream is the last one to reach PAUSED, it holds no such lock: confirm_playing.hpp.
   std::recursive_mutex prerolled_;
   std::mutex lock_;  // of playing_
   std::condition_variable changed_;

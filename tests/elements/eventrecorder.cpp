@@ -246,10 +246,47 @@ GST_START_TEST(the_end_reaches_the_application_of_a_bin_that_has_forgotten_that_
   fail_unless_equals_int(flow, GST_FLOW_OK);
   fail_unless_equals_int(gst_element_get_state(pipeline, nullptr, nullptr, 10 * GST_SECOND),
                          GST_STATE_CHANGE_SUCCESS);
+  GST_STATE_LOCK(pipeline);  // until a thread that continued its change of state has posted it
+  GST_STATE_UNLOCK(pipeline);
   gst_element_post_message(pipeline, gst_message_new_state_changed(GST_OBJECT(pipeline), GST_STATE_READY,
                                                                    GST_STATE_PAUSED, GST_STATE_VOID_PENDING));
   g_signal_emit_by_name(source, "end-of-stream", &flow);
   g_autoptr(GstBus) bus = gst_element_get_bus(pipeline);
+  g_autoptr(GstMessage) end = gst_bus_timed_pop_filtered(
+      bus, 10 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+  gst_element_set_state(pipeline, GST_STATE_NULL);
+  gst_object_unref(pipeline);
+  fail_unless(end && GST_MESSAGE_TYPE(end) == GST_MESSAGE_EOS);
+}
+GST_END_TEST
+
+// A bin forgets in PAUSED which of its elements have ended.
+GST_START_TEST(the_end_is_posted_again_after_a_pause) {
+  const Folder folder;
+  const std::string line =
+      "videotestsrc num-buffers=3 ! video/x-raw,width=64,height=48 ! jpegenc ! eventrecorder location=" +
+      folder.path() + " appsrc name=other format=time ! fakesink async=false";
+  GstElement* pipeline = gst_parse_launch(line.c_str(), nullptr);
+  g_object_set(pipeline, "message-forward", TRUE, nullptr);  // also the end of one element
+  g_autoptr(GstBus) bus = gst_element_get_bus(pipeline);
+  gst_element_set_state(pipeline, GST_STATE_PLAYING);
+  for (bool ended = false; !ended;) {
+    g_autoptr(GstMessage) message = gst_bus_timed_pop_filtered(bus, 10 * GST_SECOND, GST_MESSAGE_ELEMENT);
+    fail_unless(message != nullptr);
+    g_autoptr(GstMessage) forwarded = nullptr;
+    ended = gst_message_has_name(message, "GstBinForwarded") &&
+            gst_structure_get(gst_message_get_structure(message), "message", GST_TYPE_MESSAGE, &forwarded,
+                              nullptr) &&
+            GST_MESSAGE_TYPE(forwarded) == GST_MESSAGE_EOS;
+  }
+  for (const GstState state : {GST_STATE_PAUSED, GST_STATE_PLAYING}) {
+    gst_element_set_state(pipeline, state);
+    fail_unless_equals_int(gst_element_get_state(pipeline, nullptr, nullptr, 10 * GST_SECOND),
+                           GST_STATE_CHANGE_SUCCESS);
+  }
+  g_autoptr(GstElement) other = gst_bin_get_by_name(GST_BIN(pipeline), "other");
+  GstFlowReturn flow = GST_FLOW_ERROR;
+  g_signal_emit_by_name(other, "end-of-stream", &flow);
   g_autoptr(GstMessage) end = gst_bus_timed_pop_filtered(
       bus, 10 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
   gst_element_set_state(pipeline, GST_STATE_NULL);
@@ -541,6 +578,7 @@ static Suite* eventrecorder_suite() {
   tcase_add_test(tests, a_file_that_is_never_closed_plays_up_to_its_last_second);
   tcase_add_test(tests, stopping_without_end_of_stream_completes_the_file);
   tcase_add_test(tests, the_end_reaches_the_application_of_a_bin_that_has_forgotten_that_it_plays);
+  tcase_add_test(tests, the_end_is_posted_again_after_a_pause);
   tcase_add_test(tests, the_element_records_again_after_it_was_stopped);
   tcase_add_test(tests, stamps_that_begin_at_1000_hours_and_b_frames_become_times_from_zero);
   tcase_add_test(tests, jpeg_is_recorded_into_matroska);

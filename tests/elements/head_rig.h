@@ -23,7 +23,7 @@ using cerberus::tests::Pipe;
 inline constexpr GstClockTime kFrame = 40 * GST_MSECOND;
 inline constexpr int kWidth = 320, kHeight = 240;
 
-enum class Source { stored, live };
+enum class Source { stored, live, silent };  // silent: does not say whether it is live
 
 struct Person {
   guint id;
@@ -82,7 +82,7 @@ inline Person person(guint id, double degrees_right) {
 // A name that no other head of this test has: a driver that is late to end, on a busy machine, still has its own.
 inline std::string new_head() {
   static int heads = 0;
-  return "h" + std::to_string(++heads);
+  return std::string("h").append(std::to_string(++heads));
 }
 
 // The scripted driver, on a head of its own.
@@ -114,6 +114,9 @@ class Rig {
     gst_element_set_bus(element, bus);
     harness = gst_harness_new_with_element(element, "sink", nullptr);
     if (source == Source::stored) gst_pad_set_query_function(harness->srcpad, not_live);
+    if (source == Source::silent)
+      gst_pad_set_query_function(harness->srcpad,
+                                 [](GstPad*, GstObject*, GstQuery*) -> gboolean { return FALSE; });
     if (at_once) begin();
   }
   // Stream start, caps, segment.

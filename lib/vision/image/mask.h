@@ -26,7 +26,7 @@ inline std::uint64_t last_word_bits(int width) {
   return width % 64 ? (std::uint64_t{1} << (width % 64)) - 1 : ~std::uint64_t{0};
 }
 
-// Whether pixel x of a row is set.
+// Whether pixel x >= 0 of a row is set.
 inline bool bit_at(const std::uint64_t* row, int x) {
   const auto at = static_cast<unsigned>(x);
   return row[at / 64] >> (at % 64) & 1;
@@ -37,7 +37,7 @@ inline std::uint64_t bits_between(int first, int end) {
   return ~std::uint64_t{0} >> (64 - (end - first)) << first;
 }
 
-// Calls each(word, ones) with the bits first..end-1 of a row, word by word.
+// Calls each(word, ones) with the bits first..end-1 of a row, first >= 0, word by word.
 template <typename Each>
 void for_words(int first, int end, Each&& each) {
   for (int x = first; x < end;) {

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The end of the stream that an element posts which is no GstBaseSink.
+#pragma once
+
+#include <gst/gst.h>
+
+#include <mutex>
+#include <optional>
+
+#include "shared/confirm_playing.hpp"
+
+namespace cerberus::plugin {
+
+class StreamEnd {
+ public:
+  // With the number of the event.
+  void post(GstElement* element, guint32 number) {
+    {
+      const std::lock_guard guard(lock_);
+      posted_ = number;
+    }
+    confirm_playing(element);
+    send(element, number);
+  }
+  // On the way to PLAYING, before the base class: a bin forgets in PAUSED which of its elements have ended.
+  void repeat(GstElement* element) const {
+    std::optional<guint32> number;
+    {
+      const std::lock_guard guard(lock_);
+      number = posted_;
+    }
+    if (number) send(element, *number);
+  }
+  // The stream goes on, or another one begins.
+  void forget() {
+    const std::lock_guard guard(lock_);
+    posted_.reset();
+  }
+
+ private:
+  static void send(GstElement* element, guint32 number) {
+    GstMessage* message = gst_message_new_eos(GST_OBJECT(element));
+    gst_message_set_seqnum(message, number);
+    gst_element_post_message(element, message);
+  }
+
+  mutable std::mutex lock_;
+  std::optional<guint32> posted_;
+};
+
+}  // namespace cerberus::plugin
