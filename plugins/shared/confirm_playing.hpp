@@ -9,10 +9,10 @@ namespace cerberus::plugin {
 // GstBin forwards the end of the stream only if PLAYING was the last state that it posted. Where an element completes
 // READY to PAUSED in a streaming thread (decodebin), that thread posts PAUSED; the application, which reads it at once,
 // sets PLAYING before the thread notes that PAUSED was posted; and the end is never forwarded (seen with GStreamer 1.22
-// and 1.26). Sinks of GstBaseSink with async=true escape by their preroll lock. Others, whose own
-// PAUSED may be long complete when a decoder of another branch is the last, call this before they post the end: the bins
-// around them that play, and are on the way to no other state, post PLAYING once more. A change of state at the same time
-// does no harm: a bin that does not play forwards no end, and posts its next state itself.
+// and 1.26). Sinks of GstBaseSink with async=true escape by their preroll lock. Others, whose own PAUSED may be long
+// complete when a decoder of another branch is the last, call this before they post the end: the bins around them that
+// play, and are on the way to no other state, post PLAYING once more. A change of state at the same time does no harm: a
+// bin that does not play forwards no end, and posts its next state itself.
 inline void confirm_playing(GstElement* element) {
   g_autoptr(GstObject) bin = gst_object_get_parent(GST_OBJECT(element));
   if (!bin || !GST_IS_BIN(bin)) return;

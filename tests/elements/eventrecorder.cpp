@@ -111,6 +111,16 @@ void play(Rig& rig, const RandomEvents& what) {
   rig.finish();
 }
 
+// The end of the stream reaches the application. Frees the pipeline.
+void assert_ends(GstElement* pipeline) {
+  g_autoptr(GstBus) bus = gst_element_get_bus(pipeline);
+  g_autoptr(GstMessage) end = gst_bus_timed_pop_filtered(
+      bus, 10 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+  gst_element_set_state(pipeline, GST_STATE_NULL);
+  gst_object_unref(pipeline);
+  fail_unless(end && GST_MESSAGE_TYPE(end) == GST_MESSAGE_EOS);
+}
+
 }  // namespace
 
 GST_START_TEST(an_event_becomes_one_file_with_its_pre_roll_and_post_roll) {
@@ -251,12 +261,7 @@ GST_START_TEST(the_end_reaches_the_application_of_a_bin_that_has_forgotten_that_
   gst_element_post_message(pipeline, gst_message_new_state_changed(GST_OBJECT(pipeline), GST_STATE_READY,
                                                                    GST_STATE_PAUSED, GST_STATE_VOID_PENDING));
   g_signal_emit_by_name(source, "end-of-stream", &flow);
-  g_autoptr(GstBus) bus = gst_element_get_bus(pipeline);
-  g_autoptr(GstMessage) end = gst_bus_timed_pop_filtered(
-      bus, 10 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
-  gst_element_set_state(pipeline, GST_STATE_NULL);
-  gst_object_unref(pipeline);
-  fail_unless(end && GST_MESSAGE_TYPE(end) == GST_MESSAGE_EOS);
+  assert_ends(pipeline);
 }
 GST_END_TEST
 
@@ -287,11 +292,7 @@ GST_START_TEST(the_end_is_posted_again_after_a_pause) {
   g_autoptr(GstElement) other = gst_bin_get_by_name(GST_BIN(pipeline), "other");
   GstFlowReturn flow = GST_FLOW_ERROR;
   g_signal_emit_by_name(other, "end-of-stream", &flow);
-  g_autoptr(GstMessage) end = gst_bus_timed_pop_filtered(
-      bus, 10 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
-  gst_element_set_state(pipeline, GST_STATE_NULL);
-  gst_object_unref(pipeline);
-  fail_unless(end && GST_MESSAGE_TYPE(end) == GST_MESSAGE_EOS);
+  assert_ends(pipeline);
 }
 GST_END_TEST
 

@@ -138,6 +138,9 @@ void sample_nearest(GrayView source, const std::int32_t* x, const std::int32_t* 
   const int lanes = static_cast<int>(hn::Lanes(d));
   const auto whole = [&](const std::int32_t* p)
                          HWY_ATTR { return hn::ShiftRight<7>(hn::Add(hn::LoadU(d, p), hn::Set(d, 64))); };
+  const auto take = [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) out[k] = source.at((x[k] + 64) >> 7, (y[k] + 64) >> 7);
+  };
   int i = 0;
   for (; i + lanes <= count; i += lanes) {
     const auto ix = whole(x + i), iy = whole(y + i);
@@ -147,9 +150,9 @@ void sample_nearest(GrayView source, const std::int32_t* x, const std::int32_t* 
       hn::StoreU(hn::LoadU(dt, &source.at(x0, y0)), dt, out + i);
       continue;
     }
-    for (int k = i; k < i + lanes; ++k) out[k] = source.at((x[k] + 64) >> 7, (y[k] + 64) >> 7);
+    take(i, i + lanes);
   }
-  for (; i < count; ++i) out[i] = source.at((x[i] + 64) >> 7, (y[i] + 64) >> 7);
+  take(i, count);
 }
 
 }  // namespace cerberus::vision::HWY_NAMESPACE
