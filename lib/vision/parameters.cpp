@@ -137,6 +137,7 @@ void name(Numbers n, TrackParameters& p) {
          N(size_wander),
          N(border_wander),
          N(fade),
+         N(panned_widens),
          N(stopped_wander),
          N(stopped_uncertainty),
          N(coast_brake),

@@ -190,12 +190,15 @@ void TrackHypothesis::refine_extent(const Box& seen, const Comparison& how, doub
 }
 
 // A person who stands dissolves from the mask piece by piece without getting smaller; an object that the picture's edge
-// cuts shows more or less of itself with every frame.
+// cuts shows more or less of itself with every frame. While the camera moves a region lacks a limb more often than it has
+// too much, and a lunge is over in half a second.
 void TrackHypothesis::resize(SlowValue& extent, double seen, bool is_cut, double seconds) {
   const TrackParameters& q = *parameters;
-  const bool fades = !is_cut && speed() < q.stand_speed * size() && std::log(seen) < extent.value;
+  const double measured = std::log(seen);
+  const bool fades = !is_cut && speed() < q.stand_speed * size() && measured < extent.value;
+  const bool widens = camera_moved && &extent == &w && measured > extent.value;
   if (is_cut) extent.variance += q.border_wander * seconds;
-  extent.correct(std::log(seen), square(q.size_noise) * (fades ? q.fade : 1));
+  extent.correct(measured, square(q.size_noise) * (fades ? q.fade : widens ? 1 / q.panned_widens : 1));
 }
 
 // An end that goes on steadily is a walker's. One that jumps reveals more of the object.

@@ -29,6 +29,9 @@ struct TrackParameters {
   double border_wander = 1.5 * 1.5;  // 1/s, of an extent that the picture's edge cuts
   // Times less that a shrinking extent counts for a standing object. swept: docs/quality.md, 1 to 20.
   double fade = 2.0;
+  // Times more that a width which grows counts while the camera moves. swept: docs/quality.md, 1 to 4. Guard: the width of
+  // the player in bench-fit.
+  double panned_widens = 1.5;
   double stopped_wander = 0.1;       // S/sqrt(s) by which the place of a stopped track becomes uncertain
   double stopped_uncertainty = 0.5;  // S, the most that this may add up to
   double coast_brake = 1.0;          // s, time constant in which a coasted track slows down
