@@ -190,8 +190,8 @@ void TrackHypothesis::refine_extent(const Box& seen, const Comparison& how, doub
 }
 
 // A person who stands dissolves from the mask piece by piece without getting smaller; an object that the picture's edge
-// cuts shows more or less of itself with every frame. While the camera moves a region lacks a limb more often than it has
-// too much, and a lunge is over in half a second.
+// cuts shows more or less of itself with every frame. While the camera moves, a region that is wider than the track counts
+// more: a lunge is over in half a second, and a narrower region may have lost a limb.
 void TrackHypothesis::resize(SlowValue& extent, double seen, bool is_cut, double seconds) {
   const TrackParameters& q = *parameters;
   const double measured = std::log(seen);

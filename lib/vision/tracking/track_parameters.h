@@ -29,8 +29,9 @@ struct TrackParameters {
   double border_wander = 1.5 * 1.5;  // 1/s, of an extent that the picture's edge cuts
   // Times less that a shrinking extent counts for a standing object. swept: docs/quality.md, 1 to 20.
   double fade = 2.0;
-  // Times more that a width which grows counts while the camera moves. swept: docs/quality.md, 1 to 4. Guard: the width of
-  // the player in bench-fit.
+  // Factor on the weight, the inverse variance, of a region that is wider than the track while the camera moves. swept:
+  // docs/quality.md, 1 to 4. Guard: unit track_hypothesis (1), the skier's share in bench-quality (from 2.5 on), the
+  // player's width in bench-fit (1 on Debian 13).
   double panned_widens = 1.5;
   double stopped_wander = 0.1;       // S/sqrt(s) by which the place of a stopped track becomes uncertain
   double stopped_uncertainty = 0.5;  // S, the most that this may add up to
