@@ -201,8 +201,8 @@ bool take_caps(CerberusEventRecorder* self, GstPad* pad, GstEvent* event) {
 void take_eos(CerberusEventRecorder* self, GstPad* pad, GstEvent* event) {
   self->priv->gate.has_data(GST_ELEMENT(self));
   if (!self->priv->session.end_of_stream(input_of(pad))) return;
-  const guint32 number = gst_event_get_seqnum(event);
-  self->priv->session.when_done([self, number] { self->priv->end.post(GST_ELEMENT(self), number); });
+  const plugin::StreamEnd::Pending end = self->priv->end.expect(gst_event_get_seqnum(event));
+  self->priv->session.when_done([self, end] { self->priv->end.post(GST_ELEMENT(self), end); });
 }
 
 gboolean cerberus_event_recorder_event(GstPad* pad, GstObject* parent, GstEvent* event) {

@@ -4,6 +4,7 @@
 
 #include <gst/gst.h>
 
+#include <cstdint>
 #include <mutex>
 #include <optional>
 
@@ -13,14 +14,25 @@ namespace cerberus::plugin {
 
 class StreamEnd {
  public:
-  // With the number of the event.
-  void post(GstElement* element, guint32 number) {
+  // An end that is posted when all has been written.
+  struct Pending {
+    std::uint64_t stream;
+    guint32 number;  // of the event
+  };
+  // All of the present stream has come.
+  Pending expect(guint32 number) const {
+    const std::lock_guard guard(lock_);
+    return {stream_, number};
+  }
+  // Nothing where the stream goes on since, or another one has begun: a seek may come while a file is being closed.
+  void post(GstElement* element, const Pending& end) {
     {
       const std::lock_guard guard(lock_);
-      posted_ = number;
+      if (end.stream != stream_) return;
+      posted_ = end.number;
     }
     confirm_playing(element);
-    send(element, number);
+    send(element, end.number);
   }
   // On the way to PLAYING, before the base class: a bin forgets in PAUSED which of its elements have ended.
   void repeat(GstElement* element) const {
@@ -34,6 +46,7 @@ class StreamEnd {
   // The stream goes on, or another one begins.
   void forget() {
     const std::lock_guard guard(lock_);
+    ++stream_;
     posted_.reset();
   }
 
@@ -45,6 +58,7 @@ class StreamEnd {
   }
 
   mutable std::mutex lock_;
+  std::uint64_t stream_ = 0;  // counts on
   std::optional<guint32> posted_;
 };
 

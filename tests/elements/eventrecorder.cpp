@@ -5,6 +5,8 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <chrono>
+#include <condition_variable>
 #include <cstdlib>
 #include <fstream>
 #include <map>
@@ -446,6 +448,57 @@ GST_START_TEST(a_started_event_goes_on_in_another_file_behind_a_flush) {
 }
 GST_END_TEST
 
+// The thread that closes the file waits in its message while the flush comes.
+GST_START_TEST(a_flush_cancels_an_end_that_waits_for_the_last_file) {
+  struct Closing {
+    std::mutex lock;
+    std::condition_variable changed;
+    bool reached = false, goes_on = false;
+  } closing;
+  Rig rig;
+  gst_bus_set_sync_handler(
+      rig.bus,
+      [](GstBus*, GstMessage* message, gpointer data) {
+        const GstStructure* facts = gst_message_get_structure(message);
+        if (!facts || g_strcmp0(gst_structure_get_string(facts, "state"), "ended") != 0) return GST_BUS_PASS;
+        Closing& file = *static_cast<Closing*>(data);
+        std::unique_lock guard(file.lock);
+        file.reached = true;
+        file.changed.notify_all();
+        file.changed.wait(guard, [&] { return file.goes_on; });
+        return GST_BUS_PASS;
+      },
+      &closing, nullptr);
+  rig.start();
+  rig.play_to(30);
+  rig.start_event();
+  rig.play_to(40);
+  rig.video->end();
+  {
+    std::unique_lock guard(closing.lock);
+    fail_unless(closing.changed.wait_for(guard, std::chrono::seconds(10), [&] { return closing.reached; }));
+  }
+  fail_unless(rig.video->send(gst_event_new_flush_start()));
+  fail_unless(rig.video->send(gst_event_new_flush_stop(TRUE)));
+  {
+    const std::lock_guard guard(closing.lock);
+    closing.goes_on = true;
+  }
+  closing.changed.notify_all();
+  rig.video->push_segment();
+  rig.next = 0;
+  rig.play_to(20);
+  GstEvent* end = gst_event_new_eos();
+  const guint32 number = gst_event_get_seqnum(end);
+  fail_unless(rig.video->send(end));
+  g_autoptr(GstMessage) ended = rig.take(GST_MESSAGE_EOS);
+  fail_unless(ended != nullptr);
+  fail_unless_equals_int(gst_message_get_seqnum(ended), number);
+  rig.stop();
+  gst_bus_set_sync_handler(rig.bus, nullptr, nullptr, nullptr);
+}
+GST_END_TEST
+
 GST_START_TEST(a_started_event_goes_on_where_times_fall_back_until_it_is_stopped) {
   Rig rig;
   rig.start();
@@ -580,6 +633,7 @@ static Suite* eventrecorder_suite() {
   tcase_add_test(tests, stopping_without_end_of_stream_completes_the_file);
   tcase_add_test(tests, the_end_reaches_the_application_of_a_bin_that_has_forgotten_that_it_plays);
   tcase_add_test(tests, the_end_is_posted_again_after_a_pause);
+  tcase_add_test(tests, a_flush_cancels_an_end_that_waits_for_the_last_file);
   tcase_add_test(tests, the_element_records_again_after_it_was_stopped);
   tcase_add_test(tests, stamps_that_begin_at_1000_hours_and_b_frames_become_times_from_zero);
   tcase_add_test(tests, jpeg_is_recorded_into_matroska);
