@@ -52,8 +52,8 @@
  * the start. Retention deletes file, lines, picture and row together, by `retention-age`, `retention-size` and
  * `retention-free`, unless `keep` is set. Files that the index does not name are never deleted.
  *
- * The end of the stream is posted when the files are complete, and once more when a pause ends. The bins around the element
- * may post PLAYING once more before it.
+ * The end of the stream is posted when the files are complete, and once more when a pause ends; not where a flush (a seek) came
+ * meanwhile. The bins around the element may post PLAYING once more before it.
  *
  * Writing has a thread of its own. A live stream never waits for the disk: where more than 64 MiB wait, the file is given
  * up and a warning posted. A stream that is not live waits. Where a file cannot be written (disk full, folder gone)
