@@ -18,6 +18,14 @@ std::vector<PeopleSequence> people_sequences(const std::filesystem::path& data, 
           {"davis_tennis", source_of(sequence("tennis"), data), data / "davis_tennis" / "boxes.txt"}};
 }
 
+vision::Size size_of(GstSample* sample) {
+  const GstStructure* s = gst_caps_get_structure(gst_sample_get_caps(sample), 0);
+  vision::Size size{};
+  gst_structure_get_int(s, "width", &size.width);
+  gst_structure_get_int(s, "height", &size.height);
+  return size;
+}
+
 std::vector<Found> found_on(GstBuffer* frame) {
   std::vector<Found> found;
   GPtrArray* regions = cerberus_buffer_get_regions(frame);

@@ -20,6 +20,9 @@ struct PeopleSequence {
 // video: source of vtest.avi. A sequence that is not there is listed all the same.
 std::vector<PeopleSequence> people_sequences(const std::filesystem::path& data, const std::string& video);
 
+// Of the frame, by its caps.
+vision::Size size_of(GstSample* sample);
+
 struct Found {
   Person person;
   bool group = false;

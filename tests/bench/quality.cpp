@@ -16,11 +16,9 @@
 #include "boxes.h"
 #include "people_sequences.h"
 #include "sequences.h"
+#include "set_detector.h"
 #include "support/data.h"
 #include "tracks.h"
-#include "vision/detector.h"
-#include "vision/frame_history.h"
-#include "vision/parameters.h"
 
 using namespace cerberus;
 using namespace cerberus::bench;
@@ -64,73 +62,6 @@ struct Finder {
 };
 
 using OnFrame = std::function<void(const std::vector<Found>&, int)>;
-
-// vision::Detector as motiondetect uses it with no property set: frames that repeat a picture, and times that are missing
-// or go backwards, are treated as there.
-class SetDetector {
- public:
-  explicit SetDetector(const vision::DetectorParameters& numbers) {
-    options_.burnt_in = true;
-    detector_.set_options(options_);
-    detector_.set_parameters(numbers);
-  }
-
-  // An I420 frame.
-  std::vector<Found> find(GstSample* sample) {
-    GstVideoInfo info;
-    GstVideoFrame mapped;
-    GstBuffer* buffer = gst_sample_get_buffer(sample);
-    if (!gst_video_info_from_caps(&info, gst_sample_get_caps(sample)) ||
-        !gst_video_frame_map(&mapped, &info, buffer, GST_MAP_READ))
-      return {};
-    const vision::Record record =
-        detector_.begin({static_cast<const std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(&mapped, 0)), info.width,
-                         info.height, GST_VIDEO_FRAME_PLANE_STRIDE(&mapped, 0), 1, false, 0, 0, 0});
-    gst_video_frame_unmap(&mapped);
-    std::optional<Time> time;
-    if (GST_BUFFER_PTS_IS_VALID(buffer)) time = Time(GST_BUFFER_PTS(buffer));
-    const double nominal =
-        GST_VIDEO_INFO_FPS_N(&info) > 0 ? 1.0 * GST_VIDEO_INFO_FPS_D(&info) / GST_VIDEO_INFO_FPS_N(&info) : 0;
-    if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) && !history_.misses_frames(time, nominal))
-      history_.drop();
-    vision::FrameHistory history = history_;
-    const vision::FrameHistory::Step step = history.next(time, nominal);
-    vision::DetectorFrame frame;
-    frame.size = {info.width, info.height};
-    frame.fresh = step.fresh;
-    frame.seconds = step.seconds;
-    frame.number = number_ + 1;
-    if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP) ||
-        detector_.repeats(*record, frame, step.repeatable)) {
-      const auto since = history_.repeat(time, nominal);
-      std::erase_if(tracks_, [&](const vision::Track& t) {
-        return !since || !vision::outlasts(t.state, *since, options_.tracks);
-      });
-      return found();
-    }
-    history_ = history;
-    number_ = frame.number;
-    detector_.run(*record, frame);
-    tracks_.assign(record->tracks->begin(), record->tracks->end());
-    return found();
-  }
-
- private:
-  using Time = vision::FrameHistory::Time;
-
-  std::vector<Found> found() const {
-    std::vector<Found> all;
-    for (const vision::Track& t : tracks_)
-      all.push_back({{static_cast<int>(t.id), t.box}, t.kind == vision::RegionKind::group});
-    return all;
-  }
-
-  vision::DetectorOptions options_;
-  vision::Detector detector_;
-  vision::FrameHistory history_;
-  std::vector<vision::Track> tracks_;  // of the last picture
-  std::uint64_t number_ = 0;
-};
 
 // False: not all frames could be read, and what is printed of them is nothing.
 bool for_each_frame(const std::string& source, const Finder& finder, const OnFrame& each) {

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "set_detector.h"
+
+#include <gst/video/video.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace cerberus::bench {
+
+using Time = vision::FrameHistory::Time;
+
+SetDetector::SetDetector(const vision::DetectorParameters& numbers, int analysis_width) {
+  options_.burnt_in = true;
+  options_.analysis_width = analysis_width;
+  detector_.set_options(options_);
+  detector_.set_parameters(numbers);
+}
+
+std::vector<Found> SetDetector::find(GstSample* sample) {
+  GstVideoInfo info;
+  GstVideoFrame mapped;
+  GstBuffer* buffer = gst_sample_get_buffer(sample);
+  if (!gst_video_info_from_caps(&info, gst_sample_get_caps(sample)) ||
+      !gst_video_frame_map(&mapped, &info, buffer, GST_MAP_READ))
+    return {};
+  const vision::Record record =
+      detector_.begin({static_cast<const std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(&mapped, 0)), info.width,
+                       info.height, GST_VIDEO_FRAME_PLANE_STRIDE(&mapped, 0), 1, false, 0, 0, 0});
+  gst_video_frame_unmap(&mapped);
+  std::optional<Time> time;
+  if (GST_BUFFER_PTS_IS_VALID(buffer)) time = Time(GST_BUFFER_PTS(buffer));
+  const double nominal =
+      GST_VIDEO_INFO_FPS_N(&info) > 0 ? 1.0 * GST_VIDEO_INFO_FPS_D(&info) / GST_VIDEO_INFO_FPS_N(&info) : 0;
+  if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) && !history_.misses_frames(time, nominal))
+    history_.drop();
+  vision::FrameHistory history = history_;
+  const vision::FrameHistory::Step step = history.next(time, nominal);
+  vision::DetectorFrame frame;
+  frame.size = {info.width, info.height};
+  frame.fresh = step.fresh;
+  frame.seconds = step.seconds;
+  frame.number = number_ + 1;
+  if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP) ||
+      detector_.repeats(*record, frame, step.repeatable)) {
+    const auto since = history_.repeat(time, nominal);
+    std::erase_if(tracks_, [&](const vision::Track& t) {
+      return !since || !vision::outlasts(t.state, *since, options_.tracks);
+    });
+    return found();
+  }
+  history_ = history;
+  number_ = frame.number;
+  detector_.run(*record, frame);
+  tracks_.assign(record->tracks->begin(), record->tracks->end());
+  return found();
+}
+
+std::vector<Found> SetDetector::found() const {
+  std::vector<Found> all;
+  for (const vision::Track& t : tracks_)
+    all.push_back({{static_cast<int>(t.id), t.box}, t.kind == vision::RegionKind::group});
+  return all;
+}
+
+}  // namespace cerberus::bench

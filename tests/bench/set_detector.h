@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// vision::Detector as motiondetect uses it, but for its tuned numbers (vision/parameters.h).
+#pragma once
+
+#include <gst/gst.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "people_sequences.h"
+#include "vision/detector.h"
+#include "vision/frame_history.h"
+#include "vision/parameters.h"
+
+namespace cerberus::bench {
+
+// Frames that repeat a picture, and times that are missing or go backwards, are treated as motiondetect treats them.
+class SetDetector {
+ public:
+  // analysis_width: that property of motiondetect; all others have their defaults.
+  explicit SetDetector(const vision::DetectorParameters& numbers,
+                       int analysis_width = vision::DetectorOptions{}.analysis_width);
+
+  // What is found on an I420 frame; nothing where it cannot be read.
+  std::vector<Found> find(GstSample* sample);
+
+ private:
+  std::vector<Found> found() const;
+
+  vision::DetectorOptions options_;
+  vision::Detector detector_;
+  vision::FrameHistory history_;
+  std::vector<vision::Track> tracks_;  // of the last picture
+  std::uint64_t number_ = 0;
+};
+
+}  // namespace cerberus::bench
