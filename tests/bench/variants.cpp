@@ -8,7 +8,6 @@
 #include <gst/gst.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <string>
