@@ -326,17 +326,13 @@ void with_people(const std::filesystem::path& data, const std::string& vtest, As
 
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
-  const auto data = tests::data_folder();
-  const auto vtest = tests::vtest_source();
-  if (!data || !vtest) {
-    std::printf("skipped: %s\n", data ? tests::kNoVtest : tests::kNoData);
-    return 77;
-  }
+  const auto real = tests::real_video();
+  if (!real) return tests::kSkipped;
   Asked asked;
   const std::string option = argc > 1 ? argv[1] : "";
-  if (!cost(*data, asked)) return 1;
+  if (!cost(real->data, asked)) return 1;
   if (option == "--cost") return 0;
-  if (!nobody(*data, option == "--before", asked)) return 1;
-  with_people(*data, *vtest, asked);
+  if (!nobody(real->data, option == "--before", asked)) return 1;
+  with_people(real->data, real->vtest, asked);
   return asked.verdict();
 }

@@ -101,16 +101,12 @@ bool measure(const PeopleSequence& s, const std::string& detector, Asked& asked)
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
   const std::string detector = argc > 1 ? argv[1] : kJudged;
-  const auto data = tests::data_folder();
-  const auto video = tests::vtest_source();
-  if (!data || !video) {
-    std::printf("skipped: %s\n", data ? tests::kNoVtest : tests::kNoData);
-    return 77;
-  }
+  const auto real = tests::real_video();
+  if (!real) return tests::kSkipped;
   Asked asked;
   bool measured = true;
   std::puts("Fit and identities    boxes    width     foot     head   hidden  kept  lost");
-  for (const PeopleSequence& s : people_sequences(*data, *video))
+  for (const PeopleSequence& s : people_sequences(real->data, real->vtest))
     if (fs::exists(s.truth)) measured = measure(s, detector, asked) && measured;
   if (detector != kJudged) return measured ? 0 : 1;
   const int verdict = asked.verdict();

@@ -280,13 +280,9 @@ bool run_real(const RealCase& c, const std::string& source, Run run, Pool& pool)
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
   const bool real_time = argc > 1 && std::string(argv[1]) == "real-time";
-  const auto data = tests::data_folder();
-  const auto video = tests::vtest_source();
-  if (!data || !video) {
-    std::printf("skipped: %s\n", data ? tests::kNoVtest : tests::kNoData);
-    return 77;
-  }
-  const People truth = read_people(*data / "pets09_s2l1_view1" / "gt_interpolated.txt");
+  const auto real = tests::real_video();
+  if (!real) return tests::kSkipped;
+  const People truth = read_people(real->data / "pets09_s2l1_view1" / "gt_interpolated.txt");
   using std::chrono::milliseconds;
   const RealCase real_cases[] = {
       {"visca with, real time", {.dead_time = milliseconds(60)}, "latency=60000000"},
@@ -302,7 +298,7 @@ int main(int argc, char** argv) {
     for (const auto& [frame, people] : truth)
       for (const Person& p : people)
         if (p.id == person) last = frame;
-    const std::string source = *video + " ! identity eos-after=" + std::to_string(last + 1);
+    const std::string source = real->vtest + " ! identity eos-after=" + std::to_string(last + 1);
     Pool reference;
     for (const int from : starts)
       if (!run_simulated(source, "", Run(&truth, person, from), reference)) return 1;

@@ -39,16 +39,12 @@ bool follow(Run& run, const std::string& source, const std::string& head) {
 // The arguments, if any, are properties of pantiltsink.
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
-  const auto data = tests::data_folder();
-  const auto source = tests::vtest_source();
-  if (!data || !source) {
-    std::printf("skipped: %s\n", data ? tests::kNoVtest : tests::kNoData);
-    return 77;
-  }
+  const auto real = tests::real_video();
+  if (!real) return tests::kSkipped;
   const bool judged = argc == 1;
   std::string head;
   for (int i = 1; i < argc; ++i) head += std::string(argv[i]) + " ";
-  const People truth = read_people(*data / "pets09_s2l1_view1" / "gt_interpolated.txt");
+  const People truth = read_people(real->data / "pets09_s2l1_view1" / "gt_interpolated.txt");
   std::map<int, std::vector<int>> frames;  // of each person
   for (const auto& [frame, people] : truth)
     for (const Person& p : people) frames[p.id].push_back(frame);
@@ -65,7 +61,7 @@ int main(int argc, char** argv) {
     for (std::size_t i = 0; i < seen.size(); ++i) {
       if (i > 0 && seen[i] - seen[i - 1] < 50) continue;
       Run run(&truth, person, seen[i]);
-      if (!follow(run, *source, head)) return 1;
+      if (!follow(run, real->vtest, head)) return 1;
       const double n = std::max(run.annotated, 1);
       const bool promised = std::ranges::find(kNotYet, std::pair{person, seen[i]}) == std::end(kNotYet);
       const std::string row = "person " + std::to_string(person) + " from " + std::to_string(seen[i]);

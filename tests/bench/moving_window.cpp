@@ -114,13 +114,9 @@ bool measure(Counts& counts, TrackScore& identities, const std::string& source, 
 
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
-  const auto data = tests::data_folder();
-  const auto source = tests::vtest_source();
-  if (!data || !source) {
-    std::printf("skipped: %s\n", data ? tests::kNoVtest : tests::kNoData);
-    return 77;
-  }
-  const People truth = read_people(*data / "pets09_s2l1_view1" / "gt_interpolated.txt");
+  const auto real = tests::real_video();
+  if (!real) return tests::kSkipped;
+  const People truth = read_people(real->data / "pets09_s2l1_view1" / "gt_interpolated.txt");
   // The whole chain, and what it would be without tracks.
   std::vector<std::string> detectors{kJudged,
                                      "cameramotion ! threeframediff ! fuzzythreshold ! motionregions"};
@@ -134,8 +130,9 @@ int main(int argc, char** argv) {
     double idf1_rest = 0, idf1_moving = 0;  // means of the ways or places
     for (int i = 0; i < kPhases; ++i) {
       TrackScore at_rest, on_the_way;
-      if (!measure(rest, at_rest, *source, truth, detector, {2 * kReach * (i + 0.5) / kPhases, 0}) ||
-          !measure(moving, on_the_way, *source, truth, detector, {4 * kReach * (i + 0.5) / kPhases, kSpeed}))
+      if (!measure(rest, at_rest, real->vtest, truth, detector, {2 * kReach * (i + 0.5) / kPhases, 0}) ||
+          !measure(moving, on_the_way, real->vtest, truth, detector,
+                   {4 * kReach * (i + 0.5) / kPhases, kSpeed}))
         return 1;
       idf1_rest += at_rest.idf1() / kPhases;
       idf1_moving += on_the_way.idf1() / kPhases;

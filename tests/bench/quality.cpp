@@ -237,27 +237,23 @@ int main(int argc, char** argv) {
   std::string set;
   std::vector<std::string> detectors;
   if (!read_arguments({argv + 1, argv + argc}, numbers, set, detectors)) return 2;
-  const auto data = tests::data_folder();
-  const auto video = tests::vtest_source();
-  if (!data || !video) {
-    std::printf("skipped: %s\n", data ? tests::kNoVtest : tests::kNoData);
-    return 77;
-  }
+  const auto real = tests::real_video();
+  if (!real) return tests::kSkipped;
   Asked asked;
   bool measured = true;
   if (!set.empty()) {  // judged by the one who sweeps
-    measured = boxes(*data, *video, {set, &numbers}, asked);
-    measured = tracks(*data, *video, {set, &numbers}, asked) && measured;
-    measured = skier(*data, {set, &numbers}, asked) && measured;
+    measured = boxes(real->data, real->vtest, {set, &numbers}, asked);
+    measured = tracks(real->data, real->vtest, {set, &numbers}, asked) && measured;
+    measured = skier(real->data, {set, &numbers}, asked) && measured;
     if (detectors.empty()) return measured ? 0 : 1;
   } else if (detectors.empty()) {
     detectors = {kJudged, "motiondetect preset=paper"};
   }
   for (const std::string& detector : detectors) {
-    masks(*data, detector, asked);
-    measured = boxes(*data, *video, {detector}, asked) && measured;
-    if (detector == kJudged) measured = tracks(*data, *video, {detector}, asked) && measured;
-    measured = skier(*data, {detector}, asked) && measured;
+    masks(real->data, detector, asked);
+    measured = boxes(real->data, real->vtest, {detector}, asked) && measured;
+    if (detector == kJudged) measured = tracks(real->data, real->vtest, {detector}, asked) && measured;
+    measured = skier(real->data, {detector}, asked) && measured;
   }
   const int verdict = asked.verdict();
   return measured ? verdict : 1;

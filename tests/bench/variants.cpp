@@ -123,19 +123,15 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\nbench-variants [--set STAGE.NAME=VALUE]...\n", wrong.c_str());
     return 2;
   }
-  const auto data = tests::data_folder();
-  const auto video = tests::vtest_source();
-  if (!data || !video) {
-    std::printf("skipped: %s\n", data ? tests::kNoVtest : tests::kNoData);
-    return 77;
-  }
+  const auto real = tests::real_video();
+  if (!real) return tests::kSkipped;
   Asked asked;
   const bool judged = argc == 1;
   bool measured = true;
   std::puts(
       "Means of 24 variants                 MOTA   IDF1  precision  recall  switches   width   hidden   "
       "kept");
-  for (const PeopleSequence& s : people_sequences(*data, *video))
+  for (const PeopleSequence& s : people_sequences(real->data, real->vtest))
     if (fs::exists(s.truth)) measured = measure(s, numbers, judged, asked) && measured;
   if (!judged) return measured ? 0 : 1;
   const int verdict = asked.verdict();

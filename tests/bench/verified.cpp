@@ -103,15 +103,11 @@ int main(int argc, char** argv) {
     return 2;
   }
   const std::span<char*> wanted(argv + std::min(argc, 2), argv + argc);
-  const auto data = tests::data_folder();
-  const auto video = tests::vtest_source();
-  if (!data || !video) {
-    std::printf("skipped: %s\n", data ? tests::kNoVtest : tests::kNoData);
-    return 77;
-  }
+  const auto real = tests::real_video();
+  if (!real) return tests::kSkipped;
   Asked asked;
   bool measured = true;
-  for (const PeopleSequence& sequence : people_sequences(*data, *video)) {
+  for (const PeopleSequence& sequence : people_sequences(real->data, real->vtest)) {
     if (!wanted.empty() &&
         std::ranges::find(wanted, sequence.name, [](char* w) { return std::string(w); }) == wanted.end())
       continue;

@@ -45,4 +45,12 @@ std::optional<std::string> vtest_source() {
   return "filesrc location=\"" + video->string() + "\" ! decodebin";
 }
 
+std::optional<RealVideo> real_video() {
+  const auto data = data_folder();
+  const auto video = vtest_source();
+  if (data && video) return RealVideo{*data, *video};
+  std::printf("skipped: %s\n", data ? kNoVtest : kNoData);
+  return {};
+}
+
 }  // namespace cerberus::tests

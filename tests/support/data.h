@@ -24,4 +24,13 @@ inline constexpr char kNoVtest[] =
     "no vtest.avi (`pipelines/setup video FOLDER` fetches it; CERBERUS_VIDEO names its place)";
 inline constexpr char kNoData[] = "no research data (CERBERUS_DATA names its folder)";
 
+// What a program needs that judges what is found on real video.
+struct RealVideo {
+  std::filesystem::path data;  // data_folder()
+  std::string vtest;           // vtest_source()
+};
+// Nothing where one of them is missing; prints which.
+std::optional<RealVideo> real_video();
+inline constexpr int kSkipped = 77;  // the exit status of a skipped test, for Meson
+
 }  // namespace cerberus::tests
