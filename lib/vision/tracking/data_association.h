@@ -35,16 +35,21 @@ class DataAssociation {
     // Appearance distance. measured on vtest.avi: the same person again .16 in the median and .28 in one of ten; two
     // persons .36 in the median.
     double usual_change = 0.15;    // costs nothing
-    double appearance_cost = 3.0;  // per unit beyond it
+    double appearance_cost = 3.0;  // per unit beyond it,
+    // and so much more the longer it was learnt, for a track in view of a camera that stands: what was seen for a second
+    // may be one side of a person, and the edge of a picture that moves hides another part of him with every frame.
+    // swept: docs/quality.md, 3 to 12 and 1 to 5 s. Guard: bench-variants, unit data_association.
+    double known_cost = 5.0;
+    double known_time = 5.0;      // s, time constant
     double sudden_change = 0.45;  // more than the last one by this: another object (shade comes step by step)
     // The most for a track that comes back into the picture. swept: docs/quality.md, .35 to .45. Guard: bench-moving_window.
     double off_screen_change = 0.4;
 
     // Blobs of several.
-    double larger = 1.3;            // times the area of a track: a region that may hold others
-    double inside = 0.5;            // of a track's area that lies in the blob
-    double crowd = 0.2;             // of a region's area that another track covers: not isolated
-    double occluded_overlap = 0.3;  // intersection over union of an occluded track with the region
+    double larger = 1.3;             // times the area of a track: a region that may hold others
+    double inside = 0.5;             // of a track's area that lies in the blob
+    double crowd = 0.2;              // of a region's area that another track covers: not isolated
+    double occluded_overlap = 0.33;  // intersection over union of an occluded track with the region
 
     // Fragments.
     double fragment_inside = 0.6;  // of the fragment's area that lies in the track's box

@@ -21,6 +21,7 @@ void exchange(TrackHypothesis& a, TrackHypothesis& b) {
   std::swap(a.id, b.id);
   std::swap(a.appearance.model, b.appearance.model);
   std::swap(a.appearance.frames, b.appearance.frames);
+  std::swap(a.appearance.learnt, b.appearance.learnt);
   std::swap(a.age, b.age);
   std::swap(a.top_speed, b.top_speed);
   std::swap(a.travel.origin, b.travel.origin);

@@ -287,7 +287,9 @@ void TrackHypothesis::remember(const AppearanceModel& seen, double seconds, bool
   learn(a.recent, a.recent_frames, q.recent_time);
   const bool frozen = a.since_contact < q.freeze ||
                       (a.since_contact < q.relearn && appearance_distance(a.model, a.recent) > q.changed);
-  if (!has_appearance() || !frozen) learn(a.model, a.frames, q.appearance_time);
+  if (has_appearance() && frozen) return;
+  learn(a.model, a.frames, q.appearance_time);
+  a.learnt += seconds;
 }
 
 }  // namespace cerberus::vision

@@ -109,6 +109,7 @@ struct TrackHypothesis {
   struct Appearance {
     AppearanceModel model;       // learnt while the object is alone
     int frames = 0;              // in which it was learnt
+    double learnt = 0;           // s of these
     double change = 0;           // appearance distance of the last region to the model
     AppearanceModel recent;      // since the last contact with another track
     int recent_frames = 0;       // in which that was learnt

@@ -35,8 +35,9 @@ struct TrackParameters {
   double panned_widens = 1.5;
   double stopped_wander = 0.1;       // S/sqrt(s) by which the place of a stopped track becomes uncertain
   double stopped_uncertainty = 0.5;  // S, the most that this may add up to
-  double coast_brake = 1.0;          // s, time constant in which a coasted track slows down
-  double off_screen_brake = 3.0;     // s, the same while the track is off-screen
+  // s, time constant in which a coasted track slows down. swept: docs/quality.md, .6 to 2.5. Guard: bench-variants.
+  double coast_brake = 0.8;
+  double off_screen_brake = 3.0;  // s, the same while the track is off-screen
   // S/s, the largest standard deviation of its velocity as it goes off-screen: the filter's is that of what a moving camera
   // follows. swept: docs/quality.md, .1 to 100. Guard: the IDF1 of bench-moving_window.
   double off_screen_speed = 0.3;
@@ -105,7 +106,7 @@ struct TrackParameters {
   int recent_frames = 3;         // frames from which on it counts
   double ambiguous_time = 2.0;   // s after contact with another track in which an identity swap is considered
   double freeze = 0.5;           // s after contact in which the model learns nothing
-  double relearn = 4.0;          // s after contact after which a changed appearance is learnt all the same
+  double relearn = 3.0;          // s after contact after which a changed appearance is learnt all the same
   double changed = 0.3;  // appearance distance beyond which the recent appearance may be another object's
 
   // Position of a track within a group by its appearance.
