@@ -297,6 +297,54 @@ START_TEST(two_people_in_one_track_are_followed_with_identities_of_their_own) {
 }
 END_TEST
 
+namespace {
+
+// Two people with coats of these grey levels stand side by side, `apart` pixels, at two looks; half a second later both are
+// `farther` to the right, where the first is nearer to the place of the second. Has the first one kept the identity? The last
+// look is surer of that one, which tells to whom it gave the detection.
+bool the_first_keeps_the_identity(std::array<int, 2> coats, double apart, double farther) {
+  const Image<std::uint8_t> texture = noise(kSmall, 1);
+  Image<std::uint8_t> picture(kSmall);
+  PersonVerifier verifier;
+  const std::vector<Candidate> group{{.id = 9, .box = {180, 95, 150, 170}, .kind = RegionKind::group}};
+  std::uint64_t frame = 0;
+  const auto look = [&](std::array<double, 2> places, double seconds, std::array<double, 2> scores) {
+    for (int y = 0; y < kSmall.height; ++y)
+      for (int x = 0; x < kSmall.width; ++x) {
+        int grey = texture.view().at(x, y);
+        for (int i = 0; i < 2; ++i)
+          if (y >= 50 && y < 130 && x >= places[i] / 2 && x < places[i] / 2 + 30) grey = coats[i] + grey % 8;
+        picture.view().at(x, y) = static_cast<std::uint8_t>(grey);
+      }
+    verifier.update(picture.view(), kFrame, {}, seconds, group);
+    const PersonVerifier::Look whole{{{{{0, 0, kFrame.width, kFrame.height, 1}}}, 1}, ++frame};
+    verifier.apply(
+        whole,
+        std::vector<PersonDetection>{{person_at(places[0]), scores[0]}, {person_at(places[1]), scores[1]}},
+        kFloor, kCertain);
+    std::vector<VerifiedRegion> people;
+    for (const VerifiedRegion& each : verifier.result())
+      if (each.person) people.push_back(each);
+    return people;
+  };
+  look({200, 200 + apart}, 0.04, {2.5, 2.5});
+  const auto first = std::ranges::min(look({200, 200 + apart}, 0.04, {2.5, 2.5}), {},
+                                      [](const VerifiedRegion& each) { return each.box.x; });
+  const auto surest = std::ranges::max(look({200 + farther, 200 + apart + farther}, 0.5, {kCertain, kFloor}),
+                                       {}, &VerifiedRegion::confidence);
+  return surest.id == first.id;
+}
+
+}  // namespace
+
+// Looks at which the one hides 40 % of the other teach nothing of either.
+START_TEST(a_detection_goes_to_the_person_whose_appearance_it_has) {
+  ck_assert(the_first_keeps_the_identity({30, 220}, 52, 30));
+  ck_assert(!the_first_keeps_the_identity({30, 30}, 52, 30));
+  ck_assert(!the_first_keeps_the_identity({30, 220}, 36, 24));
+}
+END_TEST
+
 START_TEST(a_track_that_persons_cover_in_part_is_a_group) {
   Rig rig;
   const std::vector<Candidate> track{{.id = 9, .box = {100, 95, 400, 170}, .kind = RegionKind::thing}};
@@ -548,6 +596,7 @@ int main() {
        whom_the_frames_edge_cuts_is_shown_once_a_look,
        a_detection_makes_its_track_a_person_with_the_tracks_identity,
        two_people_in_one_track_are_followed_with_identities_of_their_own,
+       a_detection_goes_to_the_person_whose_appearance_it_has,
        a_track_that_persons_cover_in_part_is_a_group,
        what_looks_like_a_person_where_nothing_moves_is_none_and_what_never_moved_ends,
        a_person_whom_looks_do_not_confirm_is_none_any_more,

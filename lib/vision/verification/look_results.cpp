@@ -109,12 +109,37 @@ void PersonVerifier::take_persons(std::span<const PersonDetection> hits, double 
   });
 }
 
-// How well a detection of a look at this frame fits a person: intersection over union; 0 if the heights differ by more than
-// `same_height`.
-double PersonVerifier::likeness(const Person& person, const Box& box, std::uint64_t frame) const {
+// Of the middle of a box, where little background is. The exposure that is taken out is that of the present frame: it changes
+// little while a look takes its time.
+AppearanceModel PersonVerifier::appearance_at(const Box& box, std::uint64_t frame) const {
+  const Box middle{box.x + box.width * (1 - p_.appearance_width) / 2,
+                   box.y + box.height * (1 - p_.core_height) / 2, box.width * p_.appearance_width,
+                   box.height * p_.core_height};
+  return appearance_of({pictures_.picture(frame), {}}, level_, pictures_.reduced(middle),
+                       p_.appearance_samples);
+}
+
+// Nobody but `person`, who may be nullptr, is in the box of the detection, and the picture's edge does not cut it.
+bool PersonVerifier::is_alone(const PersonDetection& found, std::uint64_t frame, const Person* person) const {
+  const Box& box = found.box;
+  const auto shares = [&](const Box& other) { return share_within(box, other) > p_.alone; };
+  return pictures_.seen(box).area() >= p_.whole * box.area() &&
+         std::ranges::none_of(people_,
+                              [&](const Person& q) { return &q != person && shares(q.box_at(frame)); }) &&
+         std::ranges::none_of(found_,
+                              [&](const PersonDetection& q) { return &q != &found && shares(q.box); });
+}
+
+// How well a detection of a look at this frame fits a person: intersection over union, less what the appearance differs more
+// than usual. nullopt: another height, or another place.
+std::optional<double> PersonVerifier::likeness(const Person& person, const Box& box,
+                                               std::uint64_t frame) const {
   const Box& then = person.box_at(frame);
-  const bool alike = std::abs(std::log(then.height / box.height)) <= p_.same_height;
-  return alike ? intersection_over_union(then, box) : 0;
+  const double shared = intersection_over_union(then, box);
+  if (shared < p_.same || std::abs(std::log(then.height / box.height)) > p_.same_height) return std::nullopt;
+  const double difference =
+      person.appearance.known() ? appearance_distance(person.appearance, appearance_at(box, frame)) : -1;
+  return difference < 0 ? shared : shared - p_.appearance_weight * (difference - p_.usual_difference);
 }
 
 // Gives detections to the known persons whom they show, the pair that fits best first, and takes them out of `found`. A
@@ -124,13 +149,13 @@ void PersonVerifier::confirm_known(std::vector<PersonDetection>& found, std::uin
   for (;;) {
     Person* same = nullptr;
     std::size_t index = 0;
-    double best = p_.same;
+    std::optional<double> best;
     for (std::size_t i = 0; i < found.size(); ++i)
       for (std::size_t k = 0; k < hit_.size(); ++k) {
         const Box& box = found[i].box;
-        const double fit =
-            hit_[k] || is_part_of_another(box, k, frame) ? 0 : likeness(people_[k], box, frame);
-        if (fit >= best) best = fit, same = &people_[k], index = i;
+        if (hit_[k] || is_part_of_another(box, k, frame)) continue;
+        const auto fit = likeness(people_[k], box, frame);
+        if (fit && (!best || *fit >= *best)) best = fit, same = &people_[k], index = i;
       }
     if (!same) return;
     confirm(*same, found[index], frame, scores);
@@ -141,6 +166,8 @@ void PersonVerifier::confirm_known(std::vector<PersonDetection>& found, std::uin
 void PersonVerifier::confirm(Person& person, const PersonDetection& found, std::uint64_t frame,
                              const Scores& scores) {
   hit_[static_cast<std::size_t>(&person - people_.data())] = 1;
+  if (is_alone(found, frame, &person))
+    person.appearance.learn(appearance_at(found.box, frame), p_.appearance_gain);
   const Box& track = person.track_boxes[frame % PictureHistory::kKept];
   if (track.area() > 0)
     person.agreed = intersection_over_union(track, found.box) >= p_.agrees ? person.agreed + 1 : 0;
@@ -159,6 +186,7 @@ void PersonVerifier::add(const PersonDetection& found, std::uint64_t frame, cons
   person.weak = found.score < scores.threshold;
   person.sure = !person.weak && (share_on_tracks(person.box()) >= p_.on_track || person.walks() ||
                                  found.score >= p_.sure_at * scores.threshold);
+  if (is_alone(found, frame, nullptr)) person.appearance = appearance_at(found.box, frame);
   people_.push_back(person);
 }
 

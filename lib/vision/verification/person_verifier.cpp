@@ -30,6 +30,7 @@ void keep_identities(std::span<const Candidate> before, std::span<Candidate> now
 void PersonVerifier::reset() {
   people_.clear(), lost_.clear(), records_.clear(), candidates_.clear(), result_.clear();
   pictures_.reset();
+  level_.reset();
   changes_.reset();
   line_.reset();
 }
@@ -44,6 +45,7 @@ void PersonVerifier::update(GrayView picture, Size frame, const Transform& motio
                             std::span<const Candidate> candidates) {
   seconds_ = seconds;
   pictures_.add(picture, frame, motion);
+  level_.update(pictures_.picture(pictures_.number()), pictures_.motion(pictures_.number()));
   line_.move(motion);
   compare();
   candidates_.assign(candidates.begin(), candidates.end());

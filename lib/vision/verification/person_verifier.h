@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vision/geometry/transform.h"
+#include "vision/tracking/appearance_model.h"
 #include "vision/tracking/tracker.h"
 #include "vision/verification/changed_places.h"
 #include "vision/verification/followed_person.h"
@@ -88,8 +89,9 @@ class PersonVerifier {
   struct Person : FollowedPerson {
     std::uint32_t id = 0, track = 0;  // track: id of the one that is bound; 0: none
     double evidence = 0, confidence = 0, age = 0, since_seen = 0, since_look = 0;
-    double since_support = 0;  // s since something moved where the person is
-    int candidate = -1;        // of this frame
+    double since_support = 0;    // s since something moved where the person is
+    AppearanceModel appearance;  // at looks at which the person was alone
+    int candidate = -1;          // of this frame
     // Looks in a row that showed the person where the bound track was then, and the boxes of that track by frame.
     int agreed = 0;
     std::array<Box, PictureHistory::kKept> track_boxes{};  // empty: none was bound
@@ -136,7 +138,9 @@ class PersonVerifier {
   bool is_shown_by_look(std::size_t i) const;
   bool is_covered(std::size_t i, std::uint64_t frame) const;
   bool is_absorbed(std::size_t i) const;
-  double likeness(const Person& person, const Box& box, std::uint64_t frame) const;
+  AppearanceModel appearance_at(const Box& box, std::uint64_t frame) const;
+  bool is_alone(const PersonDetection& found, std::uint64_t frame, const Person* person) const;
+  std::optional<double> likeness(const Person& person, const Box& box, std::uint64_t frame) const;
   void confirm_known(std::vector<PersonDetection>& found, std::uint64_t frame, const Scores& scores);
   void confirm(Person& person, const PersonDetection& found, std::uint64_t frame, const Scores& scores);
   void add(const PersonDetection& found, std::uint64_t frame, const Scores& scores);
@@ -162,6 +166,7 @@ class PersonVerifier {
   std::vector<char> taken_, hit_;  // of candidates, of people
   std::vector<LookTarget> targets_;
   PictureHistory pictures_;
+  BrightnessLevel level_;  // of the reduced pictures
   std::size_t most_regions_ = LookRegions::kMost;
   std::uint32_t next_own_ = kFirstOwn;
   double seconds_ = 0, period_ = 0.25, above_head_ = 0, below_feet_ = 0;

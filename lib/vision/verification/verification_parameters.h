@@ -29,7 +29,16 @@ struct VerificationParameters {
   // Logarithm of the heights' ratio up to which it may be: part_height, from where on the smaller is a part. swept:
   // docs/quality.md
   double same_height = 0.3;
-  double bound = 0.5;  // a track is of the person,
+  // The appearance (tracking/appearance_model.h) of a person, learnt at looks, against that of a detection: what differs
+  // more than usual is taken off the intersection over union, what differs less is added. swept: docs/quality.md, weight .5
+  // to 2, usual .15 to .3, gain .1 to .4, alone .05 to .3. Guard: IDF1 and switches on PETS09-S2L1 (bench-verified).
+  double appearance_weight = 1;
+  double usual_difference = 0.25;  // appearance distance
+  double appearance_gain = 0.2;    // by which a look moves it
+  double alone = 0.15;             // share of a detection that somebody else covers, up to which it is learnt
+  double appearance_width = 0.5;   // share of a box that is compared: the background is at its edges
+  int appearance_samples = 500;    // pixels that are read. Derived: as of a region (RegionAppearances)
+  double bound = 0.5;              // a track is of the person,
   // and stays so down to this, below which it also replaces the box of the person whom it shows. swept: docs/quality.md,
   // .2 to .45.
   double unbound = 0.3;
