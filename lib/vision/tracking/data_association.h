@@ -38,7 +38,7 @@ class DataAssociation {
     double appearance_cost = 3.0;  // per unit beyond it,
     // and so much more the longer it was learnt, for a track in view of a camera that stands: what was seen for a second
     // may be one side of a person, and the edge of a picture that moves hides another part of him with every frame.
-    // swept: docs/quality.md, 3 to 12 and 1 to 5 s. Guard: bench-variants, unit data_association.
+    // swept: docs/quality.md, 0 to 8 and 3 to 8 s. Guard: bench-variants, unit data_association.
     double known_cost = 5.0;
     double known_time = 5.0;      // s, time constant
     double sudden_change = 0.45;  // more than the last one by this: another object (shade comes step by step)

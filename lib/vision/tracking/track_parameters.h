@@ -106,7 +106,7 @@ struct TrackParameters {
   int recent_frames = 3;         // frames from which on it counts
   double ambiguous_time = 2.0;   // s after contact with another track in which an identity swap is considered
   double freeze = 0.5;           // s after contact in which the model learns nothing
-  double relearn = 3.0;          // s after contact after which a changed appearance is learnt all the same
+  double relearn = 4.0;          // s after contact after which a changed appearance is learnt all the same
   double changed = 0.3;  // appearance distance beyond which the recent appearance may be another object's
 
   // Position of a track within a group by its appearance.
