@@ -18,8 +18,8 @@
  * row have found right, or, once a look has left the person out, with a bound track of the person's size. One without a
  * track whom the last look at the place missed is left out until a look shows the person again, and so is one whom a single
  * look shows, without certainty, where only the picture changed and nobody walks; who is found again within 3 s keeps the
- * identity. Of two people who pass each other, the brightness of the upper and of the lower half of each tells which detection
- * shows whom. Somebody nearer who hides the person refutes nothing for a second. While a person has a track's identity
+ * identity. A detection goes to the person whom it fits best by place and, once the person has been seen alone, by the
+ * brightness of the upper and of the lower half. Somebody nearer who hides the person refutes nothing for a second. While a person has a track's identity
  * elsewhere, that track is left out. The detector's hits teach how high people are where they stand: what is much higher or
  * lower is no person, and hits down to .65 of `threshold` count where they are as high, or show somebody who is known; a
  * track that such a hit alone shows is published as it was.

@@ -33,7 +33,8 @@ struct AskedOfMean {
   double mota, idf1, precision, recall, switches;
   bool promised;
 };
-constexpr AskedOfMean kAsked[] = {{"PETS09-S2L1", 0.75, 0.74, 0, 0, 25, true},
+// IDF1 on PETS09-S2L1: .74 was asked; .841 was seen, and .782 with appearance_weight at 0.
+constexpr AskedOfMean kAsked[] = {{"PETS09-S2L1", 0.75, 0.8, 0, 0, 25, true},
                                   {"TUD-Campus", 0.5, 0.65, 0.8, 0.6, 1000, true},
                                   {"TUD-Stadtmitte", 0.3, 0, 0.7, 0.45, 1000, true},
                                   {"davis_tennis", 0, 0, 0.85, 0.85, 1000, true}};
@@ -41,7 +42,7 @@ constexpr AskedOfMean kAsked[] = {{"PETS09-S2L1", 0.75, 0.74, 0, 0, 25, true},
 struct Figure {
   const char* name;
   double (*of)(const TrackScore&);
-  double AskedOfMean::*asked;
+  double AskedOfMean::* asked;
 };
 constexpr Figure kFigures[] = {
     {"MOTA", [](const TrackScore& s) { return s.mota(); }, &AskedOfMean::mota},

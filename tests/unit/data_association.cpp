@@ -221,9 +221,9 @@ START_TEST(a_region_is_crowded_where_another_track_covers_a_fifth_of_it) {
 }
 END_TEST
 
-// Two coats alike on the left, black or white on the right. Each region lies nearer to the one track, but looks .15 unlike
-// the other one and .35 unlike this one. Not before a camera that moves.
-START_TEST(a_look_that_was_learnt_for_long_outweighs_a_place_and_a_new_one_does_not) {
+// Two coats alike on the left, black or white on the right. Each region lies nearer to the one track, but its appearance
+// differs by .15 from that of the other one and by .35 from that of this one. Not before a camera that moves.
+START_TEST(an_appearance_that_was_learnt_for_long_outweighs_a_place_and_a_new_one_does_not) {
   Image<std::uint8_t> luma(kFrame), mask(kFrame);
   for (int y = 0; y < kFrame.height; ++y)
     for (int x = 0; x < kFrame.width; ++x) {
@@ -312,7 +312,7 @@ int main() {
        fragments_one_above_the_other_merge_into_the_older_one,
        others_are_expected_only_in_a_larger_region_that_holds_half_of_them,
        a_region_is_crowded_where_another_track_covers_a_fifth_of_it,
-       a_look_that_was_learnt_for_long_outweighs_a_place_and_a_new_one_does_not,
+       an_appearance_that_was_learnt_for_long_outweighs_a_place_and_a_new_one_does_not,
        an_object_that_leaps_is_followed_where_nothing_else_can_be_it,
        as_many_pairs_as_reserved_take_no_memory});
 }

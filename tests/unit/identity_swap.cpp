@@ -60,6 +60,7 @@ bool exchanged(const std::vector<TrackHypothesis>& two) {
 START_TEST(two_that_look_like_each_other_since_contact_get_their_identities_back) {
   auto two = swapped();
   two[0].top_speed = 7;
+  two[0].appearance.learnt = 9;
   const double place = two[0].x.position, age = two[0].age, other = two[1].age;
   two[0].age += 3;
   undo_identity_swaps(two);
@@ -69,6 +70,7 @@ START_TEST(two_that_look_like_each_other_since_contact_get_their_identities_back
   ck_assert_double_eq(two[0].age, other);
   ck_assert_double_eq(two[1].age, age + 3);
   ck_assert_double_eq(two[1].top_speed, 7);
+  ck_assert_double_eq(two[1].appearance.learnt, 9);
   ck_assert_double_eq(appearance_distance(two[0].appearance.model, looks(6)), 0);
   ck_assert_double_eq(appearance_distance(two[1].appearance.model, looks(1)), 0);
   undo_identity_swaps(two);
@@ -147,8 +149,11 @@ START_TEST(the_appearance_model_is_frozen_after_contact) {
   for (int k = 0; k < 20; ++k) {
     b.predict(kFrame);
     b.remember(a_little, kFrame, true);
-    if (k < 4) ck_assert_double_eq(appearance_distance(b.appearance.model, looks(1)), 0);
+    if (k >= 4) continue;
+    ck_assert_double_eq(appearance_distance(b.appearance.model, looks(1)), 0);
+    ck_assert_double_eq_tol(b.appearance.learnt, 50 * kFrame, 1e-9);
   }
+  ck_assert_double_gt(b.appearance.learnt, 64 * kFrame);
   ck_assert_double_gt(appearance_distance(b.appearance.model, looks(1)), 0.07);
   suddenly.touch();
   seen_alone(suddenly, 6, 39);

@@ -109,8 +109,8 @@ void PersonVerifier::take_persons(std::span<const PersonDetection> hits, double 
   });
 }
 
-// Of the middle of a box, where little background is. The exposure that is taken out is that of the present frame: it changes
-// little while a look takes its time.
+// The appearance of the middle of a box, where little background is. The exposure that is taken out is that of the present
+// frame: it changes little while a look takes its time.
 AppearanceModel PersonVerifier::appearance_at(const Box& box, std::uint64_t frame) const {
   const Box middle{box.x + box.width * (1 - p_.appearance_width) / 2,
                    box.y + box.height * (1 - p_.core_height) / 2, box.width * p_.appearance_width,
@@ -119,15 +119,14 @@ AppearanceModel PersonVerifier::appearance_at(const Box& box, std::uint64_t fram
                        p_.appearance_samples);
 }
 
-// Nobody but `person`, who may be nullptr, is in the box of the detection, and the picture's edge does not cut it.
-bool PersonVerifier::is_alone(const PersonDetection& found, std::uint64_t frame, const Person* person) const {
-  const Box& box = found.box;
-  const auto shares = [&](const Box& other) { return share_within(box, other) > p_.alone; };
+// No other person and no other detection of the look covers more than `alone` of a detection's box, and the picture's edge does
+// not cut it. person: whom it shows; nullptr: nobody who is known.
+bool PersonVerifier::is_alone(const Box& box, std::uint64_t frame, const Person* person) const {
+  const auto covers = [&](const Box& other) { return share_within(box, other) > p_.alone; };
+  const auto is_in_the_way = [&](const Person& q) { return &q != person && covers(q.box_at(frame)); };
   return pictures_.seen(box).area() >= p_.whole * box.area() &&
-         std::ranges::none_of(people_,
-                              [&](const Person& q) { return &q != person && shares(q.box_at(frame)); }) &&
-         std::ranges::none_of(found_,
-                              [&](const PersonDetection& q) { return &q != &found && shares(q.box); });
+         std::ranges::none_of(people_, is_in_the_way) &&
+         std::ranges::count_if(boxes_, covers) == 1;  // the box itself
 }
 
 // How well a detection of a look at this frame fits a person: intersection over union, less what the appearance differs more
@@ -166,7 +165,7 @@ void PersonVerifier::confirm_known(std::vector<PersonDetection>& found, std::uin
 void PersonVerifier::confirm(Person& person, const PersonDetection& found, std::uint64_t frame,
                              const Scores& scores) {
   hit_[static_cast<std::size_t>(&person - people_.data())] = 1;
-  if (is_alone(found, frame, &person))
+  if (is_alone(found.box, frame, &person))
     person.appearance.learn(appearance_at(found.box, frame), p_.appearance_gain);
   const Box& track = person.track_boxes[frame % PictureHistory::kKept];
   if (track.area() > 0)
@@ -186,7 +185,7 @@ void PersonVerifier::add(const PersonDetection& found, std::uint64_t frame, cons
   person.weak = found.score < scores.threshold;
   person.sure = !person.weak && (share_on_tracks(person.box()) >= p_.on_track || person.walks() ||
                                  found.score >= p_.sure_at * scores.threshold);
-  if (is_alone(found, frame, nullptr)) person.appearance = appearance_at(found.box, frame);
+  if (is_alone(found.box, frame, nullptr)) person.appearance = appearance_at(found.box, frame);
   people_.push_back(person);
 }
 
@@ -212,6 +211,9 @@ void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> hi
   const Scores scores{threshold, certain};
   const std::size_t known = people_.size();
   hit_.assign(known, 0);
+  boxes_.clear();
+  for (const auto* each : {&found_, &weak_})
+    std::ranges::transform(*each, std::back_inserter(boxes_), &PersonDetection::box);
   confirm_known(found_, look.frame, scores);
   for (const PersonDetection& found : found_) add(found, look.frame, scores);
   confirm_known(weak_, look.frame, scores);

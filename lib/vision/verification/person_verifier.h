@@ -139,7 +139,7 @@ class PersonVerifier {
   bool is_covered(std::size_t i, std::uint64_t frame) const;
   bool is_absorbed(std::size_t i) const;
   AppearanceModel appearance_at(const Box& box, std::uint64_t frame) const;
-  bool is_alone(const PersonDetection& found, std::uint64_t frame, const Person* person) const;
+  bool is_alone(const Box& box, std::uint64_t frame, const Person* person) const;
   std::optional<double> likeness(const Person& person, const Box& box, std::uint64_t frame) const;
   void confirm_known(std::vector<PersonDetection>& found, std::uint64_t frame, const Scores& scores);
   void confirm(Person& person, const PersonDetection& found, std::uint64_t frame, const Scores& scores);
@@ -157,6 +157,7 @@ class PersonVerifier {
   ChangedPlaces changes_;
   HeightLine line_;
   std::vector<PersonDetection> found_, weak_;
+  std::vector<Box> boxes_;  // of all detections of the look
   std::vector<Box> hidden_;
   std::vector<Person> people_;
   std::vector<Lost> lost_;

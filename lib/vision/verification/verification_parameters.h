@@ -36,9 +36,10 @@ struct VerificationParameters {
   double usual_difference = 0.25;  // appearance distance
   double appearance_gain = 0.2;    // by which a look moves it
   double alone = 0.15;             // share of a detection that somebody else covers, up to which it is learnt
-  double appearance_width = 0.5;   // share of a box that is compared: the background is at its edges
-  int appearance_samples = 500;    // pixels that are read. Derived: as of a region (RegionAppearances)
-  double bound = 0.5;              // a track is of the person,
+  double appearance_width =
+      0.5;  // share of a box that is compared, with core_height: the background is at its edges
+  int appearance_samples = 500;  // pixels that are read. Derived: as of a region (RegionAppearances)
+  double bound = 0.5;            // a track is of the person,
   // and stays so down to this, below which it also replaces the box of the person whom it shows. swept: docs/quality.md,
   // .2 to .45.
   double unbound = 0.3;
