@@ -5,6 +5,11 @@
 
 namespace cerberus::vision {
 
+Box core_of(const Box& box, double width, double height) {
+  return {box.x + box.width * (1 - width) / 2, box.y + box.height * (1 - height) / 2, box.width * width,
+          box.height * height};
+}
+
 double overlap_area(const Box& a, const Box& b) {
   const double w = std::min(a.right(), b.right()) - std::max(a.x, b.x);
   const double h = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);

@@ -10,6 +10,8 @@ struct Box {
   double bottom() const { return y + height; }
   double area() const { return width * height; }
 };
+// The part around the box's middle that has these shares of its width and height.
+Box core_of(const Box& box, double width, double height);
 double overlap_area(const Box& a, const Box& b);
 // Of the box's area, that which lies in the other one; 0 of an empty box.
 double share_within(const Box& box, const Box& outer);

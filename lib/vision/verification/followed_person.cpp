@@ -10,11 +10,6 @@ namespace cerberus::vision {
 
 namespace {
 
-Box core_of(const Box& box, const VerificationParameters& p) {
-  return {box.x + box.width * (1 - p.core_width) / 2, box.y + box.height * (1 - p.core_height) / 2,
-          box.width * p.core_width, box.height * p.core_height};
-}
-
 Point middle_of(const Box& box) {
   return {box.x + box.width / 2, box.y + box.height / 2};
 }
@@ -69,7 +64,7 @@ bool FollowedPerson::find_velocity(std::uint64_t number, const PictureHistory& p
   std::array<Other, 2 * kMostAround> others;
   std::size_t n = 0;
   const auto most = static_cast<std::uint64_t>(std::clamp(p.velocity_frames, 0, kMostAround));
-  const Box core = core_of(pictures.reduced(box_), p);
+  const Box core = core_of(pictures.reduced(box_), p.core_width, p.core_height);
   const GrayView now = pictures.picture(number);
   const Point middle = middle_of(core);
   const auto add = [&](std::uint64_t k, const Point& at) {
@@ -142,7 +137,7 @@ void FollowedPerson::follow(std::uint64_t to, const PictureHistory& pictures,
   if (!known || whole) {  // of a person whom the picture's edge cuts the picture says little
     const int reach = known ? std::max(1, static_cast<int>(std::lround(p.reach_known * small.height)))
                             : std::max(2, static_cast<int>(std::ceil(p.reach * small.height)));
-    step = match_patch(before, now, core_of(small, p), step, reach);
+    step = match_patch(before, now, core_of(small, p.core_width, p.core_height), step, reach);
   }
   const Point own{(step.x - camera.x) / sx, (step.y - camera.y) / sy};
   if (!known)

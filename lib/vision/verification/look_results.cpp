@@ -112,10 +112,8 @@ void PersonVerifier::take_persons(std::span<const PersonDetection> hits, double 
 // The appearance of the middle of a box, where little background is. The exposure that is taken out is that of the present
 // frame: it changes little while a look takes its time.
 AppearanceModel PersonVerifier::appearance_at(const Box& box, std::uint64_t frame) const {
-  const Box middle{box.x + box.width * (1 - p_.appearance_width) / 2,
-                   box.y + box.height * (1 - p_.core_height) / 2, box.width * p_.appearance_width,
-                   box.height * p_.core_height};
-  return appearance_of({pictures_.picture(frame), {}}, level_, pictures_.reduced(middle),
+  const Box core = core_of(box, p_.appearance_width, p_.core_height);
+  return appearance_of({pictures_.picture(frame), {}}, level_, pictures_.reduced(core),
                        p_.appearance_samples);
 }
 
