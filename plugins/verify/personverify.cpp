@@ -19,10 +19,10 @@
  * track whom the last look at the place missed is left out until a look shows the person again, and so is one whom a single
  * look shows, without certainty, where only the picture changed and nobody walks; who is found again within 3 s keeps the
  * identity. A detection goes to the person whom it fits best by place and, once the person has been seen alone, by the
- * brightness of the upper and of the lower half. Somebody nearer who hides the person refutes nothing for a second. While a person has a track's identity
- * elsewhere, that track is left out. The detector's hits teach how high people are where they stand: what is much higher or
- * lower is no person, and hits down to .65 of `threshold` count where they are as high, or show somebody who is known; a
- * track that such a hit alone shows is published as it was.
+ * brightness of the upper and of the lower half. Somebody nearer who hides the person refutes nothing for a second. While
+ * a person has a track's identity elsewhere, that track is left out. The detector's hits teach how high people are where
+ * they stand: what is much higher or lower is no person, and hits down to .65 of `threshold` count where they are as high,
+ * or show somebody who is known; a track that such a hit alone shows is published as it was.
  *
  * The detector is OpenCV's one for pedestrians (histograms of oriented gradients, trained on the Daimler data set):
  * upright people who are at least 24 pixels high. A look shows it up to two regions, as those near the camera and those far

@@ -42,7 +42,7 @@ constexpr AskedOfMean kAsked[] = {{"PETS09-S2L1", 0.75, 0.8, 0, 0, 25, true},
 struct Figure {
   const char* name;
   double (*of)(const TrackScore&);
-  double AskedOfMean::* asked;
+  double AskedOfMean::*asked;
 };
 constexpr Figure kFigures[] = {
     {"MOTA", [](const TrackScore& s) { return s.mota(); }, &AskedOfMean::mota},

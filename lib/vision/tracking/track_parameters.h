@@ -35,8 +35,8 @@ struct TrackParameters {
   double panned_widens = 1.5;
   double stopped_wander = 0.1;       // S/sqrt(s) by which the place of a stopped track becomes uncertain
   double stopped_uncertainty = 0.5;  // S, the most that this may add up to
-  // s, time constant in which a coasted track slows down. swept: docs/quality.md, .6 to 2.5. Guard: the width on
-  // TUD-Stadtmitte (bench-fit).
+  // s, time constant in which a coasted track slows down. swept: docs/quality.md, .6 to 2.5. Guard: person 1 of
+  // bench-in_window, who is lost with 1.
   double coast_brake = 0.8;
   double off_screen_brake = 3.0;  // s, the same while the track is off-screen
   // S/s, the largest standard deviation of its velocity as it goes off-screen: the filter's is that of what a moving camera
