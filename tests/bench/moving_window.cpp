@@ -148,7 +148,8 @@ int main(int argc, char** argv) {
       const char* name;
       double reached, least;
     };
-    for (const Figure& f : {Figure{"precision, moving / at rest", moving.precision() / rest.precision(), 0.9},
+    for (const Figure& f : {Figure{"precision, at rest", rest.precision(), 0.81},
+                            {"precision, moving / at rest", moving.precision() / rest.precision(), 0.9},
                             {"recall, moving / at rest", moving.recall() / rest.recall(), 0.9},
                             {"recall, moving", moving.recall(), 0.71},
                             {"IDF1, moving / at rest", idf1_moving / idf1_rest, 0.9},

@@ -143,6 +143,25 @@ START_TEST(a_shadow_left_at_the_edge_is_no_stopped_person) {
 }
 END_TEST
 
+// He goes behind something, and a piece of fluttering tape takes his track over, too small to be him.
+START_TEST(a_remnant_is_no_stopped_person) {
+  for (const bool small : {true, false}) {
+    Place place;
+    Person man{0, 120, kBlack, kJeans};
+    bool stopped = false;
+    for (int k = 0; k < 90; ++k) {
+      man.x = 40 + 5.0 * std::min(k, 30);
+      std::vector<Region> seen{piece(man.x - kWidth / 2, 82, kWidth, kHeight)};
+      if (k >= 30) seen = {small ? piece(man.x - 6, 110, 12, 20) : piece(man.x - 10, 90, 20, 50)};
+      if (k >= 60) seen.clear();
+      place.step({man}, 0, seen);
+      stopped = stopped || (k >= 60 && !place.tracks.empty() && place.tracks[0].state == TrackState::stopped);
+    }
+    ck_assert_int_eq(stopped, !small);
+  }
+}
+END_TEST
+
 // What moves of a standing head: its two rims. Side by side, upright, of one size, and touching the edge.
 START_TEST(slivers_at_both_sides_of_a_head_at_the_edge_are_not_the_person) {
   Standing s;
@@ -206,7 +225,7 @@ int main() {
        a_person_passing_in_front_does_not_end_a_stopped_track,
        a_stopped_track_at_the_edge_ends_half_a_second_after_its_place_is_empty,
        a_person_who_stood_at_the_edge_and_leaves_is_not_held, a_shadow_left_at_the_edge_is_no_stopped_person,
-       slivers_at_both_sides_of_a_head_at_the_edge_are_not_the_person,
+       a_remnant_is_no_stopped_person, slivers_at_both_sides_of_a_head_at_the_edge_are_not_the_person,
        a_standing_person_does_not_shrink_to_a_fragment_shared_with_an_arm,
        a_shrinking_hole_has_not_travelled});
 }

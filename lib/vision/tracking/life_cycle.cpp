@@ -151,13 +151,15 @@ void LifeCycle::depart(TrackHypothesis& t) {
 }
 
 // Has the object ceased to move, rather than left or gone behind another one? It was well seen before, slower and
-// slower until nothing moved any more, uncovered; at the picture's edge its place must look as before.
+// slower until nothing moved any more, uncovered, and is not a remnant of itself; at the picture's edge its place must
+// look as before.
 bool LifeCycle::has_stopped(const TrackHypothesis& t) const {
   const Parameters& q = parameters_;
   if (t.slow < q.still || t.fit.time < q.fitted || t.travel.most < q.stop_travel || t.seen_for() < q.seen ||
       t.uncut.leaving)
     return false;
-  return !left_place(t) && !covered(t);
+  const bool remnant = t.box().area() < q.remnant * t.uncut.width * t.uncut.height;
+  return !remnant && !left_place(t) && !covered(t);
 }
 
 // Is it at the picture's edge, and its place looks otherwise?
