@@ -173,7 +173,7 @@ void name(Numbers n, TrackParameters& p) {
          N(shrinking_misfit),
          N(panned_misfit),
          N(extent_known),
-         N(shared_group),
+         N(shared_group), N(thing_group),
          N(fragment_walk),
          N(stand_speed),
          N(settled),

@@ -4,7 +4,10 @@
 #include <gst/video/video.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstring>
 #include <optional>
+#include <string>
 
 namespace cerberus::bench {
 
@@ -17,16 +20,18 @@ SetDetector::SetDetector(const vision::DetectorParameters& numbers, int analysis
   detector_.set_parameters(numbers);
 }
 
-std::vector<Found> SetDetector::find(GstSample* sample) {
+std::vector<Found> SetDetector::find(GstSample* sample, const View& view) {
   GstVideoInfo info;
   GstVideoFrame mapped;
   GstBuffer* buffer = gst_sample_get_buffer(sample);
   if (!gst_video_info_from_caps(&info, gst_sample_get_caps(sample)) ||
       !gst_video_frame_map(&mapped, &info, buffer, GST_MAP_READ))
     return {};
+  vision::GrayView picture{static_cast<const std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(&mapped, 0)),
+                           info.width, info.height, GST_VIDEO_FRAME_PLANE_STRIDE(&mapped, 0)};
+  if (view) picture = view(picture);
   const vision::Record record =
-      detector_.begin({static_cast<const std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(&mapped, 0)), info.width,
-                       info.height, GST_VIDEO_FRAME_PLANE_STRIDE(&mapped, 0), 1, false, 0, 0, 0});
+      detector_.begin({picture.data, picture.width, picture.height, picture.stride, 1, false, 0, 0, 0});
   gst_video_frame_unmap(&mapped);
   std::optional<Time> time;
   if (GST_BUFFER_PTS_IS_VALID(buffer)) time = Time(GST_BUFFER_PTS(buffer));
@@ -37,7 +42,7 @@ std::vector<Found> SetDetector::find(GstSample* sample) {
   vision::FrameHistory history = history_;
   const vision::FrameHistory::Step step = history.next(time, nominal);
   vision::DetectorFrame frame;
-  frame.size = {info.width, info.height};
+  frame.size = picture.size();
   frame.fresh = step.fresh;
   frame.seconds = step.seconds;
   frame.number = number_ + 1;
@@ -61,6 +66,18 @@ std::vector<Found> SetDetector::found() const {
   for (const vision::Track& t : tracks_)
     all.push_back({{static_cast<int>(t.id), t.box}, t.kind == vision::RegionKind::group});
   return all;
+}
+
+bool take_numbers(int argc, char** argv, vision::DetectorParameters& numbers) {
+  for (int i = 1; i < argc; i += 2) {
+    const bool is_set = std::strcmp(argv[i], "--set") == 0 && i + 1 < argc;
+    const std::string wrong =
+        is_set ? vision::set_number(numbers, argv[i + 1]) : std::string(argv[i]) + " is no option";
+    if (wrong.empty()) continue;
+    std::fprintf(stderr, "%s\nusage: %s [--set STAGE.NAME=VALUE]...\n", wrong.c_str(), argv[0]);
+    return false;
+  }
+  return true;
 }
 
 }  // namespace cerberus::bench

@@ -5,6 +5,7 @@
 #include <gst/gst.h>
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "people_sequences.h"
@@ -17,12 +18,14 @@ namespace cerberus::bench {
 // Frames that repeat a picture, and times that are missing or go backwards, are treated as motiondetect treats them.
 class SetDetector {
  public:
+  using View = std::function<vision::GrayView(vision::GrayView)>;
+
   // analysis_width: that property of motiondetect; all others have their defaults.
   explicit SetDetector(const vision::DetectorParameters& numbers,
                        int analysis_width = vision::DetectorOptions{}.analysis_width);
 
-  // What is found on an I420 frame; nothing where it cannot be read.
-  std::vector<Found> find(GstSample* sample);
+  // What is found on an I420 frame, or in what `view` makes of its luma plane; nothing where it cannot be read.
+  std::vector<Found> find(GstSample* sample, const View& view = {});
 
  private:
   std::vector<Found> found() const;
@@ -33,5 +36,9 @@ class SetDetector {
   std::vector<vision::Track> tracks_;  // of the last picture
   std::uint64_t number_ = 0;
 };
+
+// Takes `--set STAGE.NAME=VALUE`, any number of times, from the arguments behind the program's name. False: it has said what
+// is wrong.
+bool take_numbers(int argc, char** argv, vision::DetectorParameters& numbers);
 
 }  // namespace cerberus::bench

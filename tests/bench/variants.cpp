@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -116,14 +115,7 @@ bool measure(const PeopleSequence& s, const vision::DetectorParameters& numbers,
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
   vision::DetectorParameters numbers;
-  for (int i = 1; i < argc; i += 2) {
-    const bool is_set = std::strcmp(argv[i], "--set") == 0 && i + 1 < argc;
-    const std::string wrong =
-        is_set ? vision::set_number(numbers, argv[i + 1]) : std::string(argv[i]) + " is no option";
-    if (wrong.empty()) continue;
-    std::fprintf(stderr, "%s\nbench-variants [--set STAGE.NAME=VALUE]...\n", wrong.c_str());
-    return 2;
-  }
+  if (!take_numbers(argc, argv, numbers)) return 2;
   const auto real = tests::real_video();
   if (!real) return tests::kSkipped;
   Asked asked;

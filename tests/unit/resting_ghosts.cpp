@@ -3,6 +3,7 @@
 #include "vision/components/resting_ghosts.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 #include "support/suite.h"
@@ -110,6 +111,21 @@ START_TEST(nothing_is_judged_before_it_has_rested_or_where_its_outline_is_hidden
 }
 END_TEST
 
+// The background ends where a camera that turned has not looked yet.
+START_TEST(where_the_background_ends_is_no_outline) {
+  for (const bool known : {true, false}) {
+    Scene s;
+    Scene::paint(s.background, {0, 0, kPlace.x, kSize.height}, 0);
+    std::array<RowSpan, kSize.height> visible;
+    visible.fill({known ? 0 : kPlace.x, kSize.width});
+    s.differs(kPlace, kRested);
+    s.ghosts.remove({s.frame.view(), s.background.view(), s.quiet.view(), visible}, kRested, s.labeller,
+                    s.mask.view(), s.absorb.view());
+    ck_assert_int_eq(count(s.mask, kPlace), known ? 0 : all(kPlace));
+  }
+}
+END_TEST
+
 // A wall's pattern lies behind the outline in the frame and in the model.
 START_TEST(an_outline_that_is_an_edge_of_both_decides_nothing) {
   Scene s;
@@ -123,7 +139,8 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "resting_ghosts", {a_ghost_that_people_pass_is_taken_and_they_stay, who_has_stopped_stays,
-                         nothing_is_judged_before_it_has_rested_or_where_its_outline_is_hidden_or_short,
-                         an_outline_that_is_an_edge_of_both_decides_nothing});
+      "resting_ghosts",
+      {a_ghost_that_people_pass_is_taken_and_they_stay, who_has_stopped_stays,
+       nothing_is_judged_before_it_has_rested_or_where_its_outline_is_hidden_or_short,
+       an_outline_that_is_an_edge_of_both_decides_nothing, where_the_background_ends_is_no_outline});
 }

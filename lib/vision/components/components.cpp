@@ -234,8 +234,8 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
   if (!input.still && ++moved_ == kParameters.shake) origins_.reset();
   measure(input, windows, mask);
   for (std::size_t i = 0; i < components.size(); ++i) decide(input, components[i], evidence_[i]);
+  if (input.has_edges()) doubt_edges(input.frame, mask);
   if (input.still) {
-    doubt_edges(input.frame, mask);
     if (components.size() <= kParameters.most_components) {
       find_ghosts();
       resolve_origins();
@@ -253,9 +253,10 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
     if (!evidence.kept && (!(input.still && evidence.object) || evidence.doubtful))
       clear_bits(mask.row(r.row), r.first, r.end);
   }
+  // Even where a moving picture was registered badly: a ghost's outline must be clearly the background's.
+  resting_ghosts_.remove({input.frame, input.background, input.quiet, input.visible}, windows.recent,
+                         labeller_, mask, absorb);
   if (input.still) {
-    resting_ghosts_.remove({input.frame, input.background, input.quiet}, windows.recent, labeller_, mask,
-                           absorb);
     origins_.forget(absorb);
     moved_ = 0;
   }
@@ -303,9 +304,9 @@ void ForegroundComponents::merge_neighbours(const ComponentInput& input, const F
     const std::uint8_t* age = input.age.row(r.row);
     for (int x = r.first; x < r.end; ++x) evidence_[r.component].young_pixels += age[x] < windows.young;
   }
-  // Before a camera that stands: over a moving one the background is blurred along its edges.
   const auto is_object = [&](std::size_t i, bool right, const Rows& rows) {
-    return input.still && is_side_of_object(input.frame, input.background, labeller_.runs(), i, right, rows);
+    return input.has_edges() &&
+           is_side_of_object(input.frame, input.background, labeller_.runs(), i, right, rows);
   };
   for (std::size_t i = 0; i < components.size(); ++i) {
     const Component& a = components[i];

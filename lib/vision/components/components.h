@@ -41,6 +41,9 @@ struct ComponentInput {
   bool registered = false;     // it moves, and the model fits the frame nearly everywhere
   // The columns that the frame covers, per row; empty: all.
   std::span<const RowSpan> visible{};
+
+  // Edges of the scene are where the background has them. Over a picture that was registered badly they are not.
+  bool has_edges() const { return still || registered; }
 };
 
 class ForegroundComponents {
@@ -55,8 +58,8 @@ class ForegroundComponents {
   // Where the background is young, the ghost of an object that stood there at the start looks like an object: a moving
   // edge runs along it, and a few frames cannot tell the two apart. Components close to each other are then one object:
   // two of similar size, or two narrow ones, with an even gap between them (the gap is filled), or a large component
-  // and its fragments (the fragments are dropped: they would join a strip of background to it). Before a camera that
-  // stands, neither two whose facing sides are an object's, nor a small one whose own sides are both.
+  // and its fragments (the fragments are dropped: they would join a strip of background to it). Where the background has
+  // edges, neither two whose facing sides are an object's, nor a small one whose own sides are both.
   // closed: the mask with its gaps closed, used as scratch memory.
   void merge_neighbours(const ComponentInput& input, const FrameWindows& windows, MutableBitView closed,
                         MutableBitView mask);

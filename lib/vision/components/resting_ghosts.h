@@ -5,7 +5,9 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
+#include "vision/geometry/warp.h"
 #include "vision/image/image.h"
 #include "vision/image/labelling.h"
 #include "vision/image/mask.h"
@@ -17,12 +19,13 @@ class RestingGhosts {
   struct Pictures {
     GrayView frame, background;  // blurred alike, under the same light
     GrayView quiet;              // frames since a pixel moved
+    // The columns that both have, per row; empty: all.
+    std::span<const RowSpan> visible{};
   };
 
   void preallocate(Size picture) { resting_.resize(bit_mask_size(picture)); }
-  // Takes the ghosts from `mask`, the foreground before a camera that stands, and adds them to `absorb`, the pixels that
-  // the background model takes over. rested: frames without motion, at least one, from which on a pixel rests. labeller:
-  // scratch memory.
+  // Takes the ghosts from `mask`, the foreground, and adds them to `absorb`, the pixels that the background model takes
+  // over. rested: frames without motion, at least one, from which on a pixel rests. labeller: scratch memory.
   void remove(const Pictures& pictures, int rested, Labeller& labeller, MutableBitView mask,
               MutableBitView absorb);
   std::size_t bytes() const { return resting_.bytes(); }

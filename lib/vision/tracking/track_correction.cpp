@@ -53,7 +53,7 @@ void TrackHypothesis::take_kind(RegionKind seen, bool alone, bool fits, double s
   const bool group = seen == RegionKind::group;
   in_group = group ? in_group + seconds : 0;
   if (alone && !group) kind = seen;
-  const double least = parameters->shared_group;
+  const double least = kind == RegionKind::thing ? parameters->thing_group : parameters->shared_group;
   const bool own = (alone || fits) && in_group >= least;
   const bool within = !alone && shared.time + seconds >= least;
   if (group && (own || within)) kind = seen;

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Does who is near, and in a group, stay found while the camera moves? Windows of three quarters of each sequence rest, pan,
+// tilt, zoom and shake (moving_view.h), three of each that begin at different places; means of the three, on the people as
+// the window cuts them.
+//
+//   bench-moving_people [--set STAGE.NAME=VALUE]...     other tuned numbers (vision/parameters.h); judged by the one who looks
+#include <gst/gst.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "asked.h"
+#include "boxes.h"
+#include "moving_view.h"
+#include "people_sequences.h"
+#include "set_detector.h"
+#include "support/data.h"
+#include "tracks.h"
+
+using namespace cerberus;
+using namespace cerberus::bench;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kPhases = 3;
+// Of a person, inside the window: with less there is no person, and no mistake either.
+constexpr double kLeastSeen = 0.5;
+
+struct Run {
+  Run(const vision::DetectorParameters& numbers, CameraMotion motion, double phase, vision::Size picture)
+      : view(motion, phase, picture), detector(numbers) {}
+  MovingView view;
+  SetDetector detector;
+  TrackScore score;
+
+  void add(GstSample* sample, double seconds, const std::vector<Person>& people);
+};
+
+void Run::add(GstSample* sample, double seconds, const std::vector<Person>& people) {
+  view.point(seconds);
+  std::vector<Person> found =
+      people_of(detector.find(sample, [this](vision::GrayView picture) { return view.see(picture); }));
+  std::vector<Person> there;
+  for (const Person& p : people) {
+    const vision::Box seen = view.see(p.box);
+    if (view.visible(p.box) >= kLeastSeen)
+      there.push_back({p.id, seen});
+    else
+      std::erase_if(found, [&](const Person& f) { return overlap_area(f.box, seen) > 0.5 * f.box.area(); });
+  }
+  score.add(there, found);
+}
+
+struct Figures {
+  double mota = 0, idf1 = 0, precision = 0, recall = 0, switches = 0;
+  void add(const TrackScore& s, double weight) {
+    mota += weight * s.mota();
+    idf1 += weight * s.idf1();
+    precision += weight * s.precision();
+    recall += weight * s.recall();
+    switches += weight * s.switches();
+  }
+  void print(const std::string& name) const {
+    std::printf("  %-24s %6.3f %6.3f %10.3f %7.3f %9.1f", name.c_str(), mota, idf1, precision, recall,
+                switches);
+  }
+};
+
+// False: it could not be measured.
+bool measure(const PeopleSequence& s, const vision::DetectorParameters& numbers) {
+  const People truth = read_people(s.truth, 1e9);
+  std::vector<Run> runs;
+  double first = -1;
+  const bool measured = for_each_sample(
+      s.source + " ! videoconvert ! video/x-raw,format=I420 ! appsink name=out sync=false max-buffers=4",
+      [&](GstSample* sample, int n) {
+        const double now = static_cast<double>(GST_BUFFER_PTS(gst_sample_get_buffer(sample))) / GST_SECOND;
+        if (runs.empty()) {
+          first = now;
+          for (const CameraMotion motion : kCameraMotions)
+            for (int i = 0; i < kPhases; ++i)
+              runs.emplace_back(numbers, motion, (i + 0.5) / kPhases, size_of(sample));
+        }
+        const auto people = truth.find(n);
+        for (Run& run : runs)
+          run.add(sample, now - first, people == truth.end() ? std::vector<Person>{} : people->second);
+      });
+  if (!measured || runs.empty()) return false;
+  std::size_t run = 0;
+  constexpr const char* kNames[] = {"at rest", "pan", "tilt", "zoom", "shake"};
+  Figures moving;
+  std::printf("%s\n", s.name.c_str());
+  for (std::size_t motion = 0; motion < std::size(kCameraMotions); ++motion) {
+    Figures figures;
+    for (int i = 0; i < kPhases; ++i, ++run) {
+      figures.add(runs[run].score, 1.0 / kPhases);
+      if (motion > 0) moving.add(runs[run].score, 1.0 / (kPhases * (std::size(kCameraMotions) - 1)));
+    }
+    figures.print(kNames[motion]);
+    std::puts("");
+  }
+  moving.print("all that move");
+  std::puts("");
+  return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  gst_init(&argc, &argv);
+  vision::DetectorParameters numbers;
+  if (!take_numbers(argc, argv, numbers)) return 2;
+  const auto real = tests::real_video();
+  if (!real) return tests::kSkipped;
+  bool measured = true;
+  std::puts("Windows over each sequence    MOTA   IDF1  precision  recall  switches");
+  for (const PeopleSequence& s : people_sequences(real->data, real->vtest))
+    if (fs::exists(s.truth)) measured = measure(s, numbers) && measured;
+  return measured ? 0 : 1;
+}
