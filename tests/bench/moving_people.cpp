@@ -69,8 +69,18 @@ struct Figures {
   }
 };
 
+// Seen of all that move: .746, .282 and .256; the last is .16 where ghosts that people pass are left to a standing camera.
+struct Floor {
+  const char *sequence, *name;
+  double Figures::* figure;
+  double least;
+};
+constexpr Floor kFloors[] = {{"PETS09-S2L1", "MOTA", &Figures::mota, 0.71},
+                             {"TUD-Campus", "MOTA", &Figures::mota, 0.25},
+                             {"TUD-Stadtmitte", "recall", &Figures::recall, 0.22}};
+
 // False: it could not be measured.
-bool measure(const PeopleSequence& s, const vision::DetectorParameters& numbers) {
+bool measure(const PeopleSequence& s, const vision::DetectorParameters& numbers, bool judged, Asked& asked) {
   const People truth = read_people(s.truth, 1e9);
   std::vector<Run> runs;
   double first = -1;
@@ -103,6 +113,11 @@ bool measure(const PeopleSequence& s, const vision::DetectorParameters& numbers)
     std::puts("");
   }
   moving.print("all that move");
+  for (const Floor& f : kFloors)
+    if (judged && s.name == f.sequence)
+      std::printf(
+          "%s", asked.at_least(std::string(f.name) + " on " + s.name + ", moving", moving.*f.figure, f.least)
+                    .c_str());
   std::puts("");
   return true;
 }
@@ -115,9 +130,13 @@ int main(int argc, char** argv) {
   if (!take_numbers(argc, argv, numbers)) return 2;
   const auto real = tests::real_video();
   if (!real) return tests::kSkipped;
+  Asked asked;
+  const bool judged = argc == 1;
   bool measured = true;
   std::puts("Windows over each sequence    MOTA   IDF1  precision  recall  switches");
   for (const PeopleSequence& s : people_sequences(real->data, real->vtest))
-    if (fs::exists(s.truth)) measured = measure(s, numbers) && measured;
-  return measured ? 0 : 1;
+    if (fs::exists(s.truth)) measured = measure(s, numbers, judged, asked) && measured;
+  if (!judged) return measured ? 0 : 1;
+  const int verdict = asked.verdict();
+  return measured ? verdict : 1;
 }

@@ -247,24 +247,33 @@ START_TEST(a_person_s_own_region_replaces_a_group_s_extent_at_once_and_a_person_
 END_TEST
 
 START_TEST(a_track_that_has_a_group_s_box_or_shares_its_region_for_long_is_a_group) {
-  TrackHypothesis track = walker(200, 240);
-  LifeCycle::confirm(track, 7);
-  const auto see_group = [&](int frames) {
-    for (int k = 0; k < frames; ++k)
-      track.correct({{182, 192, 40, 100}, 2000, 0.9, 1, RegionKind::group}, false, 0.04, kFrame);
-    return track.kind;
+  struct Case {
+    RegionKind before;
+    double least;  // s
   };
-  ck_assert(see_group(24) == RegionKind::thing);
-  track.miss(0.04);  // a frame without region: the second begins anew
-  ck_assert(see_group(24) == RegionKind::thing);
-  ck_assert(see_group(2) == RegionKind::group);
-  TrackHypothesis other = walker(200, 240);
-  LifeCycle::confirm(other, 7);
-  other.correct({{150, 192, 200, 100}, 9000, 0.9, 1, RegionKind::group}, false, 0.04, kFrame);
-  ck_assert(other.kind == RegionKind::thing);
-  other.shared.time = 1;  // s: long enough
-  other.correct({{150, 192, 200, 100}, 9000, 0.9, 1, RegionKind::group}, false, 0.04, kFrame);
-  ck_assert(other.kind == RegionKind::group);
+  for (const auto& [before, least] : {Case{RegionKind::person_like, 1.0}, {RegionKind::thing, 0.2}}) {
+    TrackHypothesis track = walker(200, 240);
+    LifeCycle::confirm(track, 7);
+    track.kind = before;
+    const auto see_group = [&track](int frames) {
+      for (int k = 0; k < frames; ++k)
+        track.correct({{182, 192, 40, 100}, 2000, 0.9, 1, RegionKind::group}, false, 0.04, kFrame);
+      return track.kind;
+    };
+    const int enough = static_cast<int>(std::lround(least / 0.04));
+    ck_assert(see_group(enough - 1) == before);
+    track.miss(0.04);  // a frame without region: the time begins anew
+    ck_assert(see_group(enough - 1) == before);
+    ck_assert(see_group(2) == RegionKind::group);
+    TrackHypothesis other = walker(200, 240);
+    LifeCycle::confirm(other, 7);
+    other.kind = before;
+    other.correct({{150, 192, 200, 100}, 9000, 0.9, 1, RegionKind::group}, false, 0.04, kFrame);
+    ck_assert(other.kind == before);
+    other.shared.time = least;
+    other.correct({{150, 192, 200, 100}, 9000, 0.9, 1, RegionKind::group}, false, 0.04, kFrame);
+    ck_assert(other.kind == RegionKind::group);
+  }
 }
 END_TEST
 

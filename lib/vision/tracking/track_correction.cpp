@@ -47,8 +47,8 @@ void TrackHypothesis::correct(const Region& region, bool alone, double seconds, 
 }
 
 // A group's kind is taken where the track's box is the group's and its regions have been groups for some time: bodies that
-// fail to explain one person, and a blob that touches another for some frames, look like a group, too. Within a larger group
-// it cannot be told, after that time, where the object is.
+// fail to explain one person, and a blob that touches another for some frames, look like a group, too; sooner where it was a
+// thing. Within a larger group it cannot be told, after that time, where the object is.
 void TrackHypothesis::take_kind(RegionKind seen, bool alone, bool fits, double seconds) {
   const bool group = seen == RegionKind::group;
   in_group = group ? in_group + seconds : 0;
