@@ -305,8 +305,7 @@ void ForegroundComponents::merge_neighbours(const ComponentInput& input, const F
     for (int x = r.first; x < r.end; ++x) evidence_[r.component].young_pixels += age[x] < windows.young;
   }
   const auto is_object = [&](std::size_t i, bool right, const Rows& rows) {
-    return input.has_edges() &&
-           is_side_of_object(input.frame, input.background, labeller_.runs(), i, right, rows);
+    return is_side_of_object(input.frame, input.background, labeller_.runs(), i, right, rows);
   };
   for (std::size_t i = 0; i < components.size(); ++i) {
     const Component& a = components[i];
@@ -331,12 +330,12 @@ void ForegroundComponents::merge_neighbours(const ComponentInput& input, const F
       const bool a_is_left = a.left < b.left;
       if (level && across > 0 && across < reach * tall && two && !evidence_[i].fragment &&
           is_even(input.frame, between, std::min(a.width(), b.width())) &&
-          !(is_object(i, a_is_left, beside) && is_object(j, !a_is_left, beside))) {
+          !(input.has_edges() && is_object(i, a_is_left, beside) && is_object(j, !a_is_left, beside))) {
         for (int y = between.top; y < between.bottom; ++y) set_bits(mask.row(y), between.left, between.right);
         evidence_[i].merged = evidence_[j].merged = true;
       } else if (!evidence_[i].fragment && across < p.fragment_gap * tall && down < p.fragment_gap * tall &&
                  a.area < p.fragment * b.area) {
-        if (!sides) sides = is_object(i, true, own) && is_object(i, false, own);
+        if (!sides) sides = input.still && is_object(i, true, own) && is_object(i, false, own);
         evidence_[i].fragment = !*sides;
       }
     }
