@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Does who is near, and in a group, stay found while the camera moves? Windows of three quarters of each sequence rest, pan,
-// tilt, zoom and shake (moving_view.h), three of each that begin at different places; means of the three, on the people as
-// the window cuts them.
+// Are people near the camera and in groups found while it moves? Windows of three quarters of each sequence rest, pan,
+// tilt, zoom and shake (moving_view.h), three of each with different phases; means of the three, on the people as the window
+// cuts them.
 //
-//   bench-moving_people [--set STAGE.NAME=VALUE]...     other tuned numbers (vision/parameters.h); judged by the one who looks
+//   bench-moving_people [--set STAGE.NAME=VALUE]...     other tuned numbers (vision/parameters.h); nothing is judged
 #include <gst/gst.h>
 
 #include <algorithm>
@@ -25,6 +25,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr struct {
+  CameraMotion motion;
+  const char* name;
+} kMotions[] = {{CameraMotion::rest, "at rest"},
+                {CameraMotion::pan, "pan"},
+                {CameraMotion::tilt, "tilt"},
+                {CameraMotion::zoom, "zoom"},
+                {CameraMotion::shake, "shake"}};
+constexpr int kMoving = std::size(kMotions) - 1;
 constexpr int kPhases = 3;
 // Of a person, inside the window: with less there is no person, and no mistake either.
 constexpr double kLeastSeen = 0.5;
@@ -40,13 +49,13 @@ struct Run {
 };
 
 void Run::add(GstSample* sample, double seconds, const std::vector<Person>& people) {
-  view.point(seconds);
+  view.set_time(seconds);
   std::vector<Person> found =
-      people_of(detector.find(sample, [this](vision::GrayView picture) { return view.see(picture); }));
+      people_of(detector.find(sample, [this](vision::GrayView picture) { return view.render(picture); }));
   std::vector<Person> there;
   for (const Person& p : people) {
-    const vision::Box seen = view.see(p.box);
-    if (view.visible(p.box) >= kLeastSeen)
+    const vision::Box seen = view.to_window(p.box);
+    if (view.visible_share(p.box) >= kLeastSeen)
       there.push_back({p.id, seen});
     else
       std::erase_if(found, [&](const Person& f) { return overlap_area(f.box, seen) > 0.5 * f.box.area(); });
@@ -69,7 +78,7 @@ struct Figures {
   }
 };
 
-// Seen of all that move: .746, .282 and .256; the last is .16 where ghosts that people pass are left to a standing camera.
+// Seen of all that move: .740, .282 and .255; the last is .16 where ghosts that people pass are left to a standing camera.
 struct Floor {
   const char *sequence, *name;
   double Figures::* figure;
@@ -90,7 +99,7 @@ bool measure(const PeopleSequence& s, const vision::DetectorParameters& numbers,
         const double now = static_cast<double>(GST_BUFFER_PTS(gst_sample_get_buffer(sample))) / GST_SECOND;
         if (runs.empty()) {
           first = now;
-          for (const CameraMotion motion : kCameraMotions)
+          for (const auto& [motion, name] : kMotions)
             for (int i = 0; i < kPhases; ++i)
               runs.emplace_back(numbers, motion, (i + 0.5) / kPhases, size_of(sample));
         }
@@ -100,16 +109,15 @@ bool measure(const PeopleSequence& s, const vision::DetectorParameters& numbers,
       });
   if (!measured || runs.empty()) return false;
   std::size_t run = 0;
-  constexpr const char* kNames[] = {"at rest", "pan", "tilt", "zoom", "shake"};
   Figures moving;
   std::printf("%s\n", s.name.c_str());
-  for (std::size_t motion = 0; motion < std::size(kCameraMotions); ++motion) {
+  for (const auto& [motion, name] : kMotions) {
     Figures figures;
     for (int i = 0; i < kPhases; ++i, ++run) {
       figures.add(runs[run].score, 1.0 / kPhases);
-      if (motion > 0) moving.add(runs[run].score, 1.0 / (kPhases * (std::size(kCameraMotions) - 1)));
+      if (motion != CameraMotion::rest) moving.add(runs[run].score, 1.0 / (kPhases * kMoving));
     }
-    figures.print(kNames[motion]);
+    figures.print(name);
     std::puts("");
   }
   moving.print("all that move");
@@ -127,7 +135,7 @@ bool measure(const PeopleSequence& s, const vision::DetectorParameters& numbers,
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
   vision::DetectorParameters numbers;
-  if (!take_numbers(argc, argv, numbers)) return 2;
+  if (!parse_numbers(argc, argv, numbers)) return 2;
   const auto real = tests::real_video();
   if (!real) return tests::kSkipped;
   Asked asked;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What a camera would see that moves before a recorded scene: a window of three quarters of its width and height, drawn
-// anew from each picture. No pose is told: what moves must be seen.
+// anew from each picture. No pose is published; the camera's motion must be estimated.
 #pragma once
 
 #include "boxes.h"
@@ -13,26 +13,24 @@ namespace cerberus::bench {
 enum class CameraMotion {
   rest,   // at a place that the phase chooses
   pan,    // to and fro, a quarter of the window's width a second
-  tilt,   // up and down, beside a person's height at most
-  zoom,   // in and out by a quarter in 2.4 s, on a path through the picture
-  shake,  // as a robot on rough ground: pixels to and fro, and a degree of roll
+  tilt,   // up and down, by 15 % of the scene's height in all
+  zoom,   // in and out by a quarter in 2.4 s, on a path through the scene
+  shake,  // as a robot on rough ground: some pixels to and fro, and a degree of roll
 };
-inline constexpr CameraMotion kCameraMotions[] = {CameraMotion::rest, CameraMotion::pan, CameraMotion::tilt,
-                                                  CameraMotion::zoom, CameraMotion::shake};
 
 class MovingView {
  public:
-  // phase: 0 to 1, where on its way the camera begins. picture: of the scene, pixels.
+  // phase: 0 to 1, where in its motion the camera begins. picture: of the scene, pixels.
   MovingView(CameraMotion motion, double phase, vision::Size picture);
 
-  // Points the camera at what it sees after so many seconds. Comes before the others.
-  void point(double seconds);
+  // Moves the camera to where it is after so many seconds. Comes before the others.
+  void set_time(double seconds);
   // The window of this picture; it lives until the next call.
-  vision::GrayView see(vision::GrayView picture);
+  vision::GrayView render(vision::GrayView picture);
   // Where a box of the scene is in the window, upright, cut by its edges; without area where it is outside.
-  vision::Box see(const vision::Box& box) const;
+  vision::Box to_window(const vision::Box& box) const;
   // Share of the box's area that is inside.
-  double visible(const vision::Box& box) const;
+  double visible_share(const vision::Box& box) const;
 
  private:
   CameraMotion motion_;

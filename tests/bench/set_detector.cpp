@@ -68,7 +68,7 @@ std::vector<Found> SetDetector::found() const {
   return all;
 }
 
-bool take_numbers(int argc, char** argv, vision::DetectorParameters& numbers) {
+bool parse_numbers(int argc, char** argv, vision::DetectorParameters& numbers) {
   for (int i = 1; i < argc; i += 2) {
     const bool is_set = std::strcmp(argv[i], "--set") == 0 && i + 1 < argc;
     const std::string wrong =

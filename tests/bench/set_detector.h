@@ -37,8 +37,8 @@ class SetDetector {
   std::uint64_t number_ = 0;
 };
 
-// Takes `--set STAGE.NAME=VALUE`, any number of times, from the arguments behind the program's name. False: it has said what
-// is wrong.
-bool take_numbers(int argc, char** argv, vision::DetectorParameters& numbers);
+// Reads `--set STAGE.NAME=VALUE`, any number of times, from the arguments behind the program's name. Prints what is wrong
+// and returns false.
+bool parse_numbers(int argc, char** argv, vision::DetectorParameters& numbers);
 
 }  // namespace cerberus::bench

@@ -115,7 +115,7 @@ bool measure(const PeopleSequence& s, const vision::DetectorParameters& numbers,
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
   vision::DetectorParameters numbers;
-  if (!take_numbers(argc, argv, numbers)) return 2;
+  if (!parse_numbers(argc, argv, numbers)) return 2;
   const auto real = tests::real_video();
   if (!real) return tests::kSkipped;
   Asked asked;

@@ -42,8 +42,8 @@ struct Scene {
     paint(quiet, r, since);
   }
   void remove() {
-    ghosts.remove({frame.view(), background.view(), quiet.view()}, kRested, labeller, mask.view(),
-                  absorb.view());
+    ghosts.remove({frame.view(), background.view(), quiet.view(), {}, {{}, kSize.width}}, kRested, labeller,
+                  mask.view(), absorb.view());
   }
 };
 
@@ -111,17 +111,23 @@ START_TEST(nothing_is_judged_before_it_has_rested_or_where_its_outline_is_hidden
 }
 END_TEST
 
-// The background ends where a camera that turned has not looked yet.
-START_TEST(where_the_background_ends_is_no_outline) {
-  for (const bool known : {true, false}) {
+// Beside the place ends what the frame covers, or what the model has learnt.
+START_TEST(where_nothing_can_be_compared_is_no_outline) {
+  struct Case {
+    bool visible, learnt, taken;
+  };
+  for (const Case& c : {Case{true, true, true}, {false, true, false}, {true, false, false}}) {
     Scene s;
     Scene::paint(s.background, {0, 0, kPlace.x, kSize.height}, 0);
-    std::array<RowSpan, kSize.height> visible;
-    visible.fill({known ? 0 : kPlace.x, kSize.width});
+    std::array<RowSpan, kSize.height> rows;
+    rows.fill({c.visible ? 0 : kPlace.x, kSize.width});
+    Image<std::uint8_t> age{kSize};
+    age.fill_bytes(30);
+    if (!c.learnt) Scene::paint(age, {0, 0, kPlace.x, kSize.height}, 0);
     s.differs(kPlace, kRested);
-    s.ghosts.remove({s.frame.view(), s.background.view(), s.quiet.view(), visible}, kRested, s.labeller,
-                    s.mask.view(), s.absorb.view());
-    ck_assert_int_eq(count(s.mask, kPlace), known ? 0 : all(kPlace));
+    s.ghosts.remove({s.frame.view(), s.background.view(), s.quiet.view(), age.view(), {rows, kSize.width}},
+                    kRested, s.labeller, s.mask.view(), s.absorb.view());
+    ck_assert_int_eq(count(s.mask, kPlace), c.taken ? 0 : all(kPlace));
   }
 }
 END_TEST
@@ -142,5 +148,5 @@ int main() {
       "resting_ghosts",
       {a_ghost_that_people_pass_is_taken_and_they_stay, who_has_stopped_stays,
        nothing_is_judged_before_it_has_rested_or_where_its_outline_is_hidden_or_short,
-       an_outline_that_is_an_edge_of_both_decides_nothing, where_the_background_ends_is_no_outline});
+       an_outline_that_is_an_edge_of_both_decides_nothing, where_nothing_can_be_compared_is_no_outline});
 }

@@ -152,7 +152,7 @@ START_TEST(a_remnant_is_no_stopped_person) {
     for (int k = 0; k < 90; ++k) {
       man.x = 40 + 5.0 * std::min(k, 30);
       std::vector<Region> seen{piece(man.x - kWidth / 2, 82, kWidth, kHeight)};
-      if (k >= 30) seen = {small ? piece(man.x - 6, 110, 12, 20) : piece(man.x - 10, 90, 20, 50)};
+      if (k >= 30) seen = {small ? piece(man.x - 5, 110, 10, 12) : piece(man.x - 10, 90, 20, 50)};
       if (k >= 60) seen.clear();
       place.step({man}, 0, seen);
       stopped = stopped || (k >= 60 && !place.tracks.empty() && place.tracks[0].state == TrackState::stopped);

@@ -297,6 +297,22 @@ START_TEST(what_is_a_group_for_some_frames_stays_what_it_was_and_is_a_group_when
 }
 END_TEST
 
+// One frame as a thing does not make a person's group of less than a second one.
+START_TEST(a_person_who_was_a_thing_for_a_frame_is_no_group_sooner) {
+  const Box box{180, 190, 40, 100};
+  TrackHypothesis track = walker(200, 240);
+  LifeCycle::confirm(track, 7);
+  const auto see = [&](RegionKind kind, int frames) {
+    for (int k = 0; k < frames; ++k) track.correct({box, 2000, 0.9, 1, kind}, true, 0.04, kFrame);
+    return track.kind;
+  };
+  ck_assert(see(RegionKind::person_like, 1) == RegionKind::person_like);
+  ck_assert(see(RegionKind::thing, 1) == RegionKind::thing);
+  ck_assert(see(RegionKind::group, 20) == RegionKind::thing);
+  ck_assert(see(RegionKind::group, 6) == RegionKind::group);
+}
+END_TEST
+
 // Frames until a region of half the height has replaced the extent of a moving track.
 static int frames_until_shrunk(double seconds, bool camera_moves) {
   TrackHypothesis track = walker(200, 240);
@@ -435,6 +451,7 @@ int main() {
        towards_the_picture_s_middle_an_off_screen_track_shrinks_as_a_pinhole_projects_it,
        a_person_s_own_region_replaces_a_group_s_extent_at_once_and_a_person_s_after_a_while,
        a_track_that_has_a_group_s_box_or_shares_its_region_for_long_is_a_group,
+       a_person_who_was_a_thing_for_a_frame_is_no_group_sooner,
        what_is_a_group_for_some_frames_stays_what_it_was_and_is_a_group_when_it_lasts,
        it_stays_where_it_has_stood_for_a_second_while_its_place_looks_the_same,
        a_region_of_a_person_running_off_stretches_and_of_a_meeting_jumps});

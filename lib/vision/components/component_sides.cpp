@@ -26,13 +26,13 @@ struct Contrast {
   int sum = 0, rows = 0;  // grey levels
 
   // Across column x; the component lies to the left of a right side.
-  static bool is_comparable(GrayView picture, int x) { return x >= 2 && x + 2 <= picture.width; }
+  static bool is_comparable(RowSpan visible, int x) { return x >= visible.begin + 2 && x + 2 <= visible.end; }
   static int across(GrayView picture, int x, int y, bool right) {
     const int out = right ? x + 1 : x - 2, in = right ? x - 2 : x + 1;
     return std::abs(picture.at(out, y) - picture.at(in, y));
   }
-  void add(GrayView picture, int x, int y, bool right) {
-    if (!is_comparable(picture, x)) return;
+  void add(GrayView picture, const VisibleColumns& visible, int x, int y, bool right) {
+    if (!is_comparable(visible.of(y), x)) return;
     sum += across(picture, x, y, right);
     ++rows;
   }
@@ -67,23 +67,24 @@ bool is_even(GrayView frame, const Gap& gap, int moved) {
   return uneven <= kParameters.uneven * seen;
 }
 
-bool is_side_of_object(GrayView frame, GrayView background, std::span<const Run> runs, std::size_t component,
-                       bool right, const Rows& rows) {
+bool is_side_of_object(GrayView frame, GrayView background, const VisibleColumns& visible,
+                       std::span<const Run> runs, std::size_t component, bool right, const Rows& rows) {
   Contrast in_frame, in_background;
   for_outermost(runs, component, right, rows, [&](int y, int x) {
-    in_frame.add(frame, x, y, right);
-    in_background.add(background, x, y, right);
+    in_frame.add(frame, visible, x, y, right);
+    in_background.add(background, visible, x, y, right);
   });
   return in_frame.sum >= kParameters.side_ratio * in_background.sum + kParameters.side_margin * in_frame.rows;
 }
 
-bool sides_go_on(GrayView frame, BitView mask, std::span<const Run> runs, std::size_t component) {
+bool sides_go_on(GrayView frame, const VisibleColumns& visible, BitView mask, std::span<const Run> runs,
+                 std::size_t component) {
   const Parameters& p = kParameters;
   const auto goes_on = [&](bool right) {
     Contrast side;
     int top = -1, bottom = 0, first_column = 0, last_column = 0;  // where the side begins and ends
     for_outermost(runs, component, right, {0, frame.height}, [&](int y, int x) {
-      side.add(frame, x, y, right);
+      side.add(frame, visible, x, y, right);
       if (top < 0) top = y, first_column = x;
       bottom = y + 1, last_column = x;
     });
@@ -92,7 +93,7 @@ bool sides_go_on(GrayView frame, BitView mask, std::span<const Run> runs, std::s
     const auto is_edge = [&](int x, int from, int to) {
       Contrast beyond;
       for (int y = std::max(from, 0); y < std::min(to, frame.height); ++y)
-        if (x < frame.width && !bit_at(mask.row(y), x)) beyond.add(frame, x, y, right);
+        if (x < frame.width && !bit_at(mask.row(y), x)) beyond.add(frame, visible, x, y, right);
       return beyond.rows > 0 && beyond.mean() >= p.goes_on * side.mean();
     };
     return is_edge(first_column, top - reach, top) || is_edge(last_column, bottom, bottom + reach);

@@ -87,8 +87,7 @@ void ForegroundComponents::measure(const ComponentInput& input, const FrameWindo
     evidence.recent_pixels += recent;
     evidence.young_pixels += young;
     evidence.newest_pixels += newest;
-    const RowSpan visible =
-        input.visible.empty() ? RowSpan{0, w} : input.visible[static_cast<std::size_t>(r.row)];
+    const RowSpan visible = input.columns().of(r.row);
     const auto contrast = [&](int outside, int inside) {
       ++evidence.outline;
       if (outside < visible.begin || outside >= visible.end) return;
@@ -234,7 +233,7 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
   if (!input.still && ++moved_ == kParameters.shake) origins_.reset();
   measure(input, windows, mask);
   for (std::size_t i = 0; i < components.size(); ++i) decide(input, components[i], evidence_[i]);
-  if (input.has_edges()) doubt_edges(input.frame, mask);
+  if (input.is_aligned()) doubt_edges(input, mask);
   if (input.still) {
     if (components.size() <= kParameters.most_components) {
       find_ghosts();
@@ -253,23 +252,23 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
     if (!evidence.kept && (!(input.still && evidence.object) || evidence.doubtful))
       clear_bits(mask.row(r.row), r.first, r.end);
   }
-  // Even where a moving picture was registered badly: a ghost's outline must be clearly the background's.
-  resting_ghosts_.remove({input.frame, input.background, input.quiet, input.visible}, windows.recent,
-                         labeller_, mask, absorb);
-  if (input.still) {
-    origins_.forget(absorb);
-    moved_ = 0;
-  }
+  // Not only where the picture is aligned: the contrasts that a ghost's outline must have are strict enough.
+  resting_ghosts_.remove(
+      {input.frame, input.background, input.quiet, input.still ? GrayView{} : input.age, input.columns()},
+      windows.recent, labeller_, mask, absorb);
+  origins_.forget(absorb);
+  if (input.still) moved_ = 0;
   return young_objects;
 }
 
 // What rests and is an object by its sides only is none where these are edges of the scene.
-void ForegroundComponents::doubt_edges(GrayView frame, BitView mask) {
+void ForegroundComponents::doubt_edges(const ComponentInput& input, BitView mask) {
   const auto components = labeller_.components();
   if (components.size() > kParameters.most_components) return;
   for (std::size_t i = 0; i < components.size(); ++i) {
     Evidence& evidence = evidence_[i];
-    if (!evidence.object || evidence.moved_recently || !sides_go_on(frame, mask, labeller_.runs(), i))
+    if (!evidence.object || evidence.moved_recently ||
+        !sides_go_on(input.frame, input.columns(), mask, labeller_.runs(), i))
       continue;
     evidence.object = false;
     evidence.doubtful = evidence.doubtful || 2 * evidence.young_pixels > static_cast<int>(components[i].area);
@@ -305,7 +304,8 @@ void ForegroundComponents::merge_neighbours(const ComponentInput& input, const F
     for (int x = r.first; x < r.end; ++x) evidence_[r.component].young_pixels += age[x] < windows.young;
   }
   const auto is_object = [&](std::size_t i, bool right, const Rows& rows) {
-    return is_side_of_object(input.frame, input.background, labeller_.runs(), i, right, rows);
+    return is_side_of_object(input.frame, input.background, input.columns(), labeller_.runs(), i, right,
+                             rows);
   };
   for (std::size_t i = 0; i < components.size(); ++i) {
     const Component& a = components[i];
@@ -330,7 +330,7 @@ void ForegroundComponents::merge_neighbours(const ComponentInput& input, const F
       const bool a_is_left = a.left < b.left;
       if (level && across > 0 && across < reach * tall && two && !evidence_[i].fragment &&
           is_even(input.frame, between, std::min(a.width(), b.width())) &&
-          !(input.has_edges() && is_object(i, a_is_left, beside) && is_object(j, !a_is_left, beside))) {
+          !(input.is_aligned() && is_object(i, a_is_left, beside) && is_object(j, !a_is_left, beside))) {
         for (int y = between.top; y < between.bottom; ++y) set_bits(mask.row(y), between.left, between.right);
         evidence_[i].merged = evidence_[j].merged = true;
       } else if (!evidence_[i].fragment && across < p.fragment_gap * tall && down < p.fragment_gap * tall &&

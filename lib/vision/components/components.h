@@ -42,8 +42,9 @@ struct ComponentInput {
   // The columns that the frame covers, per row; empty: all.
   std::span<const RowSpan> visible{};
 
-  // Edges of the scene are where the background has them. Over a picture that was registered badly they are not.
-  bool has_edges() const { return still || registered; }
+  // Edges of the scene lie at the same pixels of the frame and of the background.
+  bool is_aligned() const { return still || registered; }
+  VisibleColumns columns() const { return {visible, frame.width}; }
 };
 
 class ForegroundComponents {
@@ -58,9 +59,9 @@ class ForegroundComponents {
   // Where the background is young, the ghost of an object that stood there at the start looks like an object: a moving
   // edge runs along it, and a few frames cannot tell the two apart. Components close to each other are then one object:
   // two of similar size, or two narrow ones, with an even gap between them (the gap is filled), or a large component
-  // and its fragments (the fragments are dropped: they would join a strip of background to it). Not so two whose
-  // facing sides are an object's, where the background has edges, nor, before a camera that stands, a small one whose own
-  // sides are both. (Before a moving one as well, MOTA on davis_tennis was .01 lower: bench-variants.)
+  // and its fragments (the fragments are dropped: they would join a strip of background to it). Two whose
+  // facing sides are an object's stay two where the picture is aligned. A small one whose own sides are both is no fragment
+  // before a camera that stands. (Before a moving one it cost .01 of MOTA on davis_tennis: bench-variants.)
   // closed: the mask with its gaps closed, used as scratch memory.
   void merge_neighbours(const ComponentInput& input, const FrameWindows& windows, MutableBitView closed,
                         MutableBitView mask);
@@ -91,7 +92,7 @@ class ForegroundComponents {
   void measure(const ComponentInput& input, const FrameWindows& windows, BitView mask);
   void measure_edges(const ComponentInput& input, const Run& run, BitView mask, Evidence& evidence) const;
   void decide(const ComponentInput& input, const Component& component, Evidence& evidence) const;
-  void doubt_edges(GrayView frame, BitView mask);
+  void doubt_edges(const ComponentInput& input, BitView mask);
   void find_ghosts();
   void resolve_origins();
   void absorb_rest(const ComponentInput& input, const FrameWindows& windows, MutableBitView absorb) const;

@@ -40,13 +40,13 @@ void RestingGhosts::remove(const Pictures& pictures, int rested, Labeller& label
   std::array<Outline, kMostComponents> outlines{};
   for (const Run& r : labeller.runs()) {
     Outline& outline = outlines[r.component];
-    const RowSpan visible =
-        pictures.visible.empty() ? RowSpan{0, f.width} : pictures.visible[static_cast<std::size_t>(r.row)];
+    const RowSpan visible = pictures.visible.of(r.row);
     const auto look = [&](int out, int in) {
       ++outline.pixels;
       if (std::min(out, in) < visible.begin || std::max(out, in) >= visible.end ||
           bit_at(mask.row(r.row), out))
         return;
+      if (!pictures.age.empty() && pictures.age.at(out, r.row) == 0) return;  // nothing is known there
       ++outline.seen;
       outline.frame += std::abs(f.at(out, r.row) - f.at(in, r.row));
       outline.background += std::abs(b.at(out, r.row) - b.at(in, r.row));

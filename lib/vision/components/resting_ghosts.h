@@ -5,9 +5,8 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 
-#include "vision/geometry/warp.h"
+#include "vision/components/visible_columns.h"
 #include "vision/image/image.h"
 #include "vision/image/labelling.h"
 #include "vision/image/mask.h"
@@ -19,8 +18,8 @@ class RestingGhosts {
   struct Pictures {
     GrayView frame, background;  // blurred alike, under the same light
     GrayView quiet;              // frames since a pixel moved
-    // The columns that both have, per row; empty: all.
-    std::span<const RowSpan> visible{};
+    GrayView age;                // frames for which the model has learnt a pixel; empty: it has learnt all
+    VisibleColumns visible;
   };
 
   void preallocate(Size picture) { resting_.resize(bit_mask_size(picture)); }

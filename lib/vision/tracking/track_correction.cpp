@@ -47,13 +47,16 @@ void TrackHypothesis::correct(const Region& region, bool alone, double seconds, 
 }
 
 // A group's kind is taken where the track's box is the group's and its regions have been groups for some time: bodies that
-// fail to explain one person, and a blob that touches another for some frames, look like a group, too; sooner where it was a
-// thing. Within a larger group it cannot be told, after that time, where the object is.
+// fail to explain one person, and a blob that touches another for some frames, look like a group, too. That time is shorter
+// for a thing that was not a person a moment ago. Within a larger group it cannot be told, after that time, where the object
+// is.
 void TrackHypothesis::take_kind(RegionKind seen, bool alone, bool fits, double seconds) {
   const bool group = seen == RegionKind::group;
   in_group = group ? in_group + seconds : 0;
+  since_person = alone && seen == RegionKind::person_like ? 0 : since_person + seconds;
   if (alone && !group) kind = seen;
-  const double least = kind == RegionKind::thing ? parameters->thing_group : parameters->shared_group;
+  const bool thing = kind == RegionKind::thing && since_person >= parameters->shared_group;
+  const double least = thing ? parameters->thing_group : parameters->shared_group;
   const bool own = (alone || fits) && in_group >= least;
   const bool within = !alone && shared.time + seconds >= least;
   if (group && (own || within)) kind = seen;

@@ -130,6 +130,7 @@ struct TrackHypothesis {
   Box last;                             // the last region that the track had alone, carried with the scene
   RegionKind kind = RegionKind::thing;  // of that region, or of a group that it has been for long enough
   double in_group = 0;                  // s that its regions have been groups up to now
+  double since_person = 1e9;            // s since it had a person-like region alone
   Travel travel;
   Uncut uncut;
   Fit fit;

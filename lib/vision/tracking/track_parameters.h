@@ -93,7 +93,7 @@ struct TrackParameters {
   // s for which a track has shared a group's region, or its own region was a group, and from which on it is of that kind.
   // swept: docs/quality.md, .3 to 1.4.
   double shared_group = 1.0;
-  // s, the same of a thing, of which nothing is known that a group would contradict. swept: docs/quality.md, 0 to 1. Guard:
+  // s, the same of a track of kind `thing` that was not person-like for shared_group. swept: docs/quality.md, 0 to 1. Guard:
   // unit track_hypothesis.
   double thing_group = 0.2;
   double fragment_walk = 0.5;  // S that a fragment of a standing object moves before it replaces the object
