@@ -11,7 +11,7 @@ namespace cerberus::vision {
 namespace {
 
 // Guard of all: unit-resting_ghosts, MOTA on TUD-Stadtmitte (bench-quality), where two people who stood at the start
-// leave ghosts: .06 without this; its recall before a camera that moves (bench-moving_people): .16 without.
+// leave ghosts: -.03 without this; its recall before a camera that moves (bench-moving_people): .16 without.
 constexpr struct Parameters {
   double least_area = 1 / 640.0;  // of the picture: what is smaller has too short an outline
   double least_seen = 0.25;  // of the outline that borders on the background; whoever passes hides the rest
