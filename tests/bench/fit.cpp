@@ -19,12 +19,10 @@
 #include "frames.h"
 #include "hidden_people.h"
 #include "people_sequences.h"
-#include "support/data.h"
 #include "tracks.h"
 
 using namespace cerberus;
 using namespace cerberus::bench;
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -101,14 +99,7 @@ bool measure(const PeopleSequence& s, const std::string& detector, Asked& asked)
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
   const std::string detector = argc > 1 ? argv[1] : kJudged;
-  const auto real = tests::real_video();
-  if (!real) return tests::kSkipped;
-  Asked asked;
-  bool measured = true;
-  std::puts("Fit and identities    boxes    width     foot     head   hidden  kept  lost");
-  for (const PeopleSequence& s : people_sequences(real->data, real->vtest))
-    if (fs::exists(s.truth)) measured = measure(s, detector, asked) && measured;
-  if (detector != kJudged) return measured ? 0 : 1;
-  const int verdict = asked.verdict();
-  return measured ? verdict : 1;
+  return for_each_people_sequence(
+      "Fit and identities    boxes    width     foot     head   hidden  kept  lost", detector == kJudged,
+      [&](const PeopleSequence& s, Asked& asked) { return measure(s, detector, asked); });
 }

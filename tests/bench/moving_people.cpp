@@ -16,12 +16,10 @@
 #include "moving_view.h"
 #include "people_sequences.h"
 #include "set_detector.h"
-#include "support/data.h"
 #include "tracks.h"
 
 using namespace cerberus;
 using namespace cerberus::bench;
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -137,15 +135,8 @@ int main(int argc, char** argv) {
   gst_init(&argc, &argv);
   vision::DetectorParameters numbers;
   if (!parse_numbers(argc, argv, numbers)) return 2;
-  const auto real = tests::real_video();
-  if (!real) return tests::kSkipped;
-  Asked asked;
   const bool judged = argc == 1;
-  bool measured = true;
-  std::puts("Windows over each sequence    MOTA   IDF1  precision  recall  switches");
-  for (const PeopleSequence& s : people_sequences(real->data, real->vtest))
-    if (fs::exists(s.truth)) measured = measure(s, numbers, judged, asked) && measured;
-  if (!judged) return measured ? 0 : 1;
-  const int verdict = asked.verdict();
-  return measured ? verdict : 1;
+  return for_each_people_sequence(
+      "Windows over each sequence    MOTA   IDF1  precision  recall  switches", judged,
+      [&](const PeopleSequence& s, Asked& asked) { return measure(s, numbers, judged, asked); });
 }

@@ -3,7 +3,10 @@
 
 #include <cerberus/cerberus.h>
 
+#include <cstdio>
+
 #include "sequences.h"
+#include "support/data.h"
 
 namespace cerberus::bench {
 
@@ -16,6 +19,20 @@ std::vector<PeopleSequence> people_sequences(const std::filesystem::path& data, 
           {"TUD-Stadtmitte", file("mot15_tud_stadtmitte/TUD-Stadtmitte.mp4"),
            data / "mot15_tud_stadtmitte" / "gt.txt"},
           {"davis_tennis", source_of(sequence("tennis"), data), data / "davis_tennis" / "boxes.txt"}};
+}
+
+int for_each_people_sequence(const char* header, bool judged,
+                             const std::function<bool(const PeopleSequence&, Asked&)>& measure) {
+  const auto real = tests::real_video();
+  if (!real) return tests::kSkipped;
+  Asked asked;
+  bool measured = true;
+  std::puts(header);
+  for (const PeopleSequence& s : people_sequences(real->data, real->vtest))
+    if (std::filesystem::exists(s.truth)) measured = measure(s, asked) && measured;
+  if (!judged) return measured ? 0 : 1;
+  const int verdict = asked.verdict();
+  return measured ? verdict : 1;
 }
 
 vision::Size size_of(GstSample* sample) {

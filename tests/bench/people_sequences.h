@@ -5,9 +5,11 @@
 #include <gst/gst.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "asked.h"
 #include "boxes.h"
 
 namespace cerberus::bench {
@@ -19,6 +21,11 @@ struct PeopleSequence {
 };
 // video: source of vtest.avi. A sequence that is not there is listed all the same.
 std::vector<PeopleSequence> people_sequences(const std::filesystem::path& data, const std::string& video);
+
+// Prints the header, then measures each sequence whose truth is there. measure: false where it could not. judged: what is
+// asked for decides. Returns the program's exit status.
+int for_each_people_sequence(const char* header, bool judged,
+                             const std::function<bool(const PeopleSequence&, Asked&)>& measure);
 
 // Of the frame, by its caps.
 vision::Size size_of(GstSample* sample);

@@ -277,14 +277,17 @@ START_TEST(a_track_that_has_a_group_s_box_or_shares_its_region_for_long_is_a_gro
 }
 END_TEST
 
+// The kind of a track at (200, 240) after so many frames in which it had a region of this kind alone.
+static RegionKind see_alone(TrackHypothesis& track, RegionKind kind, int frames) {
+  for (int k = 0; k < frames; ++k)
+    track.correct({{180, 190, 40, 100}, 2000, 0.9, 1, kind}, true, 0.04, kFrame);
+  return track.kind;
+}
+
 START_TEST(what_is_a_group_for_some_frames_stays_what_it_was_and_is_a_group_when_it_lasts) {
-  const Box box{180, 190, 40, 100};
   TrackHypothesis track = walker(200, 240);
   LifeCycle::confirm(track, 7);
-  const auto see = [&](RegionKind kind, int frames) {
-    for (int k = 0; k < frames; ++k) track.correct({box, 2000, 0.9, 1, kind}, true, 0.04, kFrame);
-    return track.kind;
-  };
+  const auto see = [&](RegionKind kind, int frames) { return see_alone(track, kind, frames); };
   ck_assert(see(RegionKind::person_like, 1) == RegionKind::person_like);
   for (int round = 0; round < 3; ++round) {
     ck_assert(see(RegionKind::group, 24) == RegionKind::person_like);
@@ -299,13 +302,9 @@ END_TEST
 
 // One frame as a thing does not make a person's group of less than a second one.
 START_TEST(a_person_who_was_a_thing_for_a_frame_is_no_group_sooner) {
-  const Box box{180, 190, 40, 100};
   TrackHypothesis track = walker(200, 240);
   LifeCycle::confirm(track, 7);
-  const auto see = [&](RegionKind kind, int frames) {
-    for (int k = 0; k < frames; ++k) track.correct({box, 2000, 0.9, 1, kind}, true, 0.04, kFrame);
-    return track.kind;
-  };
+  const auto see = [&](RegionKind kind, int frames) { return see_alone(track, kind, frames); };
   ck_assert(see(RegionKind::person_like, 1) == RegionKind::person_like);
   ck_assert(see(RegionKind::thing, 1) == RegionKind::thing);
   ck_assert(see(RegionKind::group, 20) == RegionKind::thing);

@@ -56,8 +56,8 @@ class LifeCycle {
     double fitted = 0.5;        // s of regions of its extent
     double stop_travel = 0.45;  // S that it came
     double seen = 1.5;          // s for which it was seen
-    // Share of the largest width times the largest height that it had: a smaller box is what is left of it. measured: one such was
-    // 11x4 pixels, one 37x5. swept: docs/quality.md, 0 to .25. Guard: precision at rest in bench-moving_window.
+    // Share of the largest width times the largest height that it had: a smaller box is what is left of it. measured: one was
+    // 11x4 pixels, another 37x5. swept: docs/quality.md, 0 to .25. Guard: precision at rest in bench-moving_window.
     double remnant = 0.08;
     double covered = 0.2;  // of its box that another track covers: it may be behind that one
     // Off-screen.
