@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <map>
 
 #include "asked.h"
 #include "boxes.h"
@@ -208,6 +209,32 @@ bool skier(const fs::path& data, const Finder& finder, Asked& asked) {
   return measured;
 }
 
+// A woman who walks past parked cars before a hand-held camera that walks along (nogt_fastmcd_woman; no truth, looked at):
+// the share of frames in which the commonest identity has an upright box. False: it could not be measured.
+bool woman(const fs::path& data, const Finder& finder, Asked& asked) {
+  const fs::path clip = data / "nogt_fastmcd_woman" / "woman.mp4";
+  if (!fs::exists(clip)) {
+    std::printf("  %-16s %s\n", "fastmcd_woman", tests::kNoData);
+    return true;
+  }
+  int frames = 0, boxes = 0;
+  std::map<int, int> frames_of;
+  const bool measured = for_each_frame("filesrc location=" + clip.string() + " ! decodebin", finder,
+                                       [&](const std::vector<Found>& found, int) {
+                                         ++frames;
+                                         for (const Found& f : found)
+                                           ++boxes, frames_of[f.person.id] +=
+                                                    f.person.box.height > 1.5 * f.person.box.width;
+                                       });
+  int most = 0;
+  for (const auto& [id, n] : frames_of) most = std::max(most, n);
+  const double share = measured && frames > 0 ? static_cast<double>(most) / frames : 0;
+  std::printf("  %-16s share of frames with one identity, upright: %.3f, other boxes: %d%s\n",
+              "fastmcd_woman", share, boxes - most,
+              finder.judged() ? asked.at_least("share of fastmcd_woman", share, 0.9).c_str() : "");
+  return measured;
+}
+
 // Reads the arguments --set NAME=VALUE into `numbers`, the others are launch lines. False: prints what is wrong.
 bool read_arguments(std::span<char*> arguments, vision::DetectorParameters& numbers, std::string& set,
                     std::vector<std::string>& detectors) {
@@ -245,6 +272,7 @@ int main(int argc, char** argv) {
     measured = boxes(real->data, real->vtest, {set, &numbers}, asked);
     measured = tracks(real->data, real->vtest, {set, &numbers}, asked) && measured;
     measured = skier(real->data, {set, &numbers}, asked) && measured;
+    measured = woman(real->data, {set, &numbers}, asked) && measured;
     if (detectors.empty()) return measured ? 0 : 1;
   } else if (detectors.empty()) {
     detectors = {kJudged, "motiondetect preset=paper"};
@@ -254,6 +282,7 @@ int main(int argc, char** argv) {
     measured = boxes(real->data, real->vtest, {detector}, asked) && measured;
     if (detector == kJudged) measured = tracks(real->data, real->vtest, {detector}, asked) && measured;
     measured = skier(real->data, {detector}, asked) && measured;
+    measured = woman(real->data, {detector}, asked) && measured;
   }
   const int verdict = asked.verdict();
   return measured ? verdict : 1;
