@@ -3,6 +3,7 @@
 
 #include <check.h>
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 
 #include "support/german.h"
 #include "support/suite.h"
+#include "vision/detector.h"
 
 using namespace cerberus::vision;
 
@@ -243,6 +245,32 @@ START_TEST(the_mask_is_cut_where_the_camera_looks_at_each_frame) {
 }
 END_TEST
 
+// The detector places them only where a look, a lens and a zoom are all known.
+START_TEST(zones_of_the_world_need_a_look_and_a_field_of_view) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  constexpr DetectorFrame::Look kLook;
+  const auto unplaced = [](std::optional<DetectorFrame::Look> look, double field_of_view) {
+    Detector detector;
+    detector.set_options({});
+    accepted(detector.zones(), kAhead);
+    Image<std::uint8_t> picture({64, 48});
+    picture.fill_bytes(90);
+    DetectorFrame frame;
+    frame.size = {64, 48};
+    frame.look = look;
+    frame.field_of_view = field_of_view;
+    const GrayView view = picture.view();
+    const auto record = detector.begin({view.data, view.width, view.height, view.stride});
+    detector.run(*record, frame);
+    return detector.zones_unplaced();
+  };
+  ck_assert(!unplaced(kLook, 90 * kDegree));
+  ck_assert(unplaced({}, 90 * kDegree));
+  ck_assert(unplaced(kLook, 0));
+  ck_assert(unplaced(kLook, kUnknown));
+}
+END_TEST
+
 START_TEST(points_are_in_the_polygons_in_which_their_pixels_are) {
   Zones zones;
   accepted(
@@ -274,5 +302,6 @@ int main() {
        the_tilt_moves_zones_of_the_world_up_and_down,
        zones_of_the_world_hide_nothing_where_the_orientation_is_unknown,
        the_mask_is_cut_where_the_camera_looks_at_each_frame,
+       zones_of_the_world_need_a_look_and_a_field_of_view,
        points_are_in_the_polygons_in_which_their_pixels_are, decimal_points_are_read_in_a_german_locale});
 }
