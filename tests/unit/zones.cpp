@@ -249,9 +249,11 @@ END_TEST
 START_TEST(zones_of_the_world_need_a_look_and_a_field_of_view) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   constexpr DetectorFrame::Look kLook;
-  const auto unplaced = [](std::optional<DetectorFrame::Look> look, double field_of_view) {
+  const auto unplaced = [](std::optional<DetectorFrame::Look> look, double field_of_view, double usual = 0) {
+    DetectorOptions options;
+    options.field_of_view = usual;
     Detector detector;
-    detector.set_options({});
+    detector.set_options(options);
     accepted(detector.zones(), kAhead);
     Image<std::uint8_t> picture({64, 48});
     picture.fill_bytes(90);
@@ -268,6 +270,8 @@ START_TEST(zones_of_the_world_need_a_look_and_a_field_of_view) {
   ck_assert(unplaced({}, 90 * kDegree));
   ck_assert(unplaced(kLook, 0));
   ck_assert(unplaced(kLook, kUnknown));
+  ck_assert(!unplaced(kLook, 0, 90 * kDegree));
+  ck_assert(unplaced(kLook, kUnknown, 90 * kDegree));  // zoomed, nobody knows how far
 }
 END_TEST
 
