@@ -101,7 +101,7 @@ double DataAssociation::appearance_cost(const TrackHypothesis& t, std::size_t j)
   const bool returns = turn_of(t) == Turn::off_screen;
   const double difference = appearance_distance(t.appearance.model, appearances_->of(j));
   if (difference > (returns ? q.off_screen_change : t.appearance.change + q.sudden_change)) return -1;
-  const double known = returns || t.camera_moved ? 0 : 1 - std::exp(-t.appearance.learnt / q.known_time);
+  const double known = returns ? 0 : 1 - std::exp(-t.appearance.learnt / q.known_time);
   return (q.appearance_cost + known * q.known_cost) * std::max(0.0, difference - q.usual_change);
 }
 

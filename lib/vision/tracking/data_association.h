@@ -36,9 +36,9 @@ class DataAssociation {
     // persons .36 in the median.
     double usual_change = 0.15;    // costs nothing
     double appearance_cost = 3.0;  // per unit beyond it,
-    // and known_cost more of a model that was learnt for long, approached with known_time; for tracks in view of a camera that
-    // stands. What was seen for a second may be one side of a person, and the edge of a picture that moves hides another part
-    // with every frame. swept: docs/quality.md, 0 to 8 and 3 to 8 s. Guard: bench-variants, unit data_association.
+    // and known_cost more of a model that was learnt for long, approached with known_time, for tracks in view: what was seen
+    // for a second may be one side of a person. swept: docs/quality.md, 0 to 8 and 3 to 8 s. Guard: bench-variants, unit
+    // data_association.
     double known_cost = 5.0;
     double known_time = 5.0;      // s, time constant
     double sudden_change = 0.45;  // more than the last one by this: another object (shade comes step by step)
