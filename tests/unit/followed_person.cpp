@@ -88,6 +88,31 @@ START_TEST(the_cameras_own_turning_is_no_velocity_of_the_person) {
 }
 END_TEST
 
+// The camera turns by 6 frame pixels a frame, and the person walks 4 of his own; three of the pictures follow the look's, and
+// nothing else is known of him.
+START_TEST(the_pictures_around_the_first_look_show_how_fast_a_person_goes_while_the_camera_turns) {
+  const auto texture = [](int x, int y) {
+    return static_cast<std::uint8_t>((static_cast<std::uint32_t>(x * 73 + y * 151) * 2654435761u) >> 24);
+  };
+  Stream stream;
+  const auto left = [](int n) { return 50 + (3 + 2) * n; };  // of the person, in the reduced pictures
+  for (int n = 1; n <= 7; ++n) {
+    for (int y = 0; y < kSmall.height; ++y)
+      for (int x = 0; x < kSmall.width; ++x) {
+        const bool person = x >= left(n) && x < left(n) + 30 && y >= 50 && y < 130;
+        stream.grey.view().at(x, y) = person ? texture(x - left(n) + 1000, y) : texture(x - 3 * n, y);
+      }
+    stream.next(Transform::translation(6, 0));
+  }
+  FollowedPerson person;
+  person.begin(person_at(2 * left(4)), 4, stream.pictures, kNumbers);
+  ck_assert_double_eq_tol(person.velocity().x, 4, 0.5);
+  ck_assert_double_eq_tol(person.velocity().y, 0, 0.5);
+  ck_assert_double_eq_tol(person.box().x, 2 * left(7), 1.5);
+  ck_assert(person.walks());
+}
+END_TEST
+
 START_TEST(a_person_whom_the_edge_cuts_does_not_slow_down) {
   Stream stream;
   stream.next();
@@ -436,6 +461,7 @@ int main() {
       {two_looks_show_how_fast_a_person_goes,
        a_look_that_comes_late_counts_from_its_frame,
        the_cameras_own_turning_is_no_velocity_of_the_person,
+       the_pictures_around_the_first_look_show_how_fast_a_person_goes_while_the_camera_turns,
        a_person_whom_the_edge_cuts_does_not_slow_down,
        heights_are_judged_by_where_the_feet_are,
        two_wrong_heights_do_not_bend_the_line,
