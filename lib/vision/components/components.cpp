@@ -253,9 +253,9 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
       clear_bits(mask.row(r.row), r.first, r.end);
   }
   // Not only where the picture is aligned: the contrasts that a ghost's outline must have are strict enough.
-  resting_ghosts_.remove(
-      {input.frame, input.background, input.quiet, input.still ? GrayView{} : input.age, input.columns()},
-      windows.recent, labeller_, mask, absorb);
+  resting_ghosts_.remove({input.frame, input.background, input.quiet, input.still ? GrayView{} : input.age,
+                          input.columns(), input.lasting},
+                         windows.recent, labeller_, mask, absorb);
   origins_.forget(absorb);
   if (input.still) moved_ = 0;
   return young_objects;

@@ -41,6 +41,7 @@ struct ComponentInput {
   bool registered = false;     // it moves, and the model fits the frame nearly everywhere
   // The columns that the frame covers, per row; empty: all.
   std::span<const RowSpan> visible{};
+  BitView lasting{};  // foreground that has been the same for long, people who passed left out
 
   // Edges of the scene lie at the same pixels of the frame and of the background.
   bool is_aligned() const { return still || registered; }

@@ -20,17 +20,21 @@ class RestingGhosts {
     GrayView quiet;              // frames since a pixel moved
     GrayView age;                // frames for which the model has learnt a pixel; empty: it has learnt all
     VisibleColumns visible;
+    BitView lasting{};  // foreground that has been the same for long in all, people who passed left out
   };
 
-  void preallocate(Size picture) { resting_.resize(bit_mask_size(picture)); }
+  void preallocate(Size picture) { places_.resize(bit_mask_size(picture)); }
   // Takes the ghosts from `mask`, the foreground, and adds them to `absorb`, the pixels that the background model takes
   // over. rested: frames without motion, at least one, from which on a pixel rests. labeller: scratch memory.
   void remove(const Pictures& pictures, int rested, Labeller& labeller, MutableBitView mask,
               MutableBitView absorb);
-  std::size_t bytes() const { return resting_.bytes(); }
+  std::size_t bytes() const { return places_.bytes(); }
 
  private:
-  BitMask resting_;
+  void remove_ghosts(const Pictures& pictures, double least_seen, Labeller& labeller, MutableBitView mask,
+                     MutableBitView absorb);
+
+  BitMask places_;  // where a ghost may be
 };
 
 }  // namespace cerberus::vision
