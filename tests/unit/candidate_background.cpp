@@ -56,6 +56,34 @@ START_TEST(what_was_seen_for_half_a_second_in_all_lasts_and_passers_take_off_wha
 }
 END_TEST
 
+START_TEST(edges_across_count_as_those_along) {
+  Place place(0.04, 20);
+  for (int y = 0; y < kSize.height; ++y)
+    std::fill_n(place.frame.view().row(y), kSize.width, static_cast<std::uint8_t>(y / 4 % 2 ? 140 : 100));
+  for (int n = 0; n < 12; ++n)
+    place.candidates.update(
+        {place.frame.view(), place.foreground.view(), place.age.view(), place.quiet.view()}, place.noise);
+  ck_assert(place.lasts());  // rows 28 and 32 are 140 and 100
+}
+END_TEST
+
+// Five standard deviations are the same, nine levels at least.
+START_TEST(what_is_the_same_depends_on_the_noise) {
+  struct Case {
+    double sigma;
+    int difference;
+    bool same;
+  };
+  for (const Case& c : {Case{1, 9, true}, {1, 10, false}, {3, 15, true}, {3, 16, false}}) {
+    Place place(0.04, 20);
+    place.noise.fill(c.sigma);
+    place.see(0, 12);
+    place.see(place.frame.view().at(kX, kY) + c.difference, 1);
+    ck_assert_int_eq(place.lasts(), c.same);
+  }
+}
+END_TEST
+
 START_TEST(even_coats_are_no_candidate) {
   Place place(0.04, 20);
   place.see(30, 200);
@@ -112,6 +140,7 @@ int main() {
   return cerberus::tests::run_suite(
       "candidate_background",
       {what_was_seen_for_half_a_second_in_all_lasts_and_passers_take_off_what_they_hide,
-       even_coats_are_no_candidate, what_the_model_has_known_for_four_times_as_long_is_the_background,
-       five_frames_at_least_are_needed, after_a_turn_all_is_new, a_candidate_follows_the_light});
+       edges_across_count_as_those_along, what_is_the_same_depends_on_the_noise, even_coats_are_no_candidate,
+       what_the_model_has_known_for_four_times_as_long_is_the_background, five_frames_at_least_are_needed,
+       after_a_turn_all_is_new, a_candidate_follows_the_light});
 }

@@ -222,7 +222,7 @@ START_TEST(a_region_is_crowded_where_another_track_covers_a_fifth_of_it) {
 END_TEST
 
 // Two coats alike on the left, black or white on the right. Each region lies nearer to the one track, but its appearance
-// differs by .15 from that of the other one and by .35 from that of this one.
+// differs by .15 from that of the other one and by .35 from that of this one, whether the camera moves or not.
 START_TEST(an_appearance_that_was_learnt_for_long_outweighs_a_place_and_a_new_one_does_not) {
   Image<std::uint8_t> luma(kFrame), mask(kFrame);
   for (int y = 0; y < kFrame.height; ++y)
@@ -241,15 +241,20 @@ START_TEST(an_appearance_that_was_learnt_for_long_outweighs_a_place_and_a_new_on
     t.appearance.frames = 10;
     s.tracks.push_back(t);
   }
-  const auto exchanged = [&s](double learnt) {
-    for (TrackHypothesis& t : s.tracks) t.appearance.learnt = learnt;
+  const auto exchanged = [&s](double learnt, bool camera_moved) {
+    for (TrackHypothesis& t : s.tracks) {
+      t.appearance.learnt = learnt;
+      t.camera_moved = camera_moved;
+    }
     s.association.associate(s.tracks, s.regions, s.appearances, {kFrame, 0.1, 0});
     const auto matches = s.association.matches();
     ck_assert_int_eq(matches[0].region + matches[1].region, 1);
     return matches[0].region == 1;
   };
-  ck_assert(!exchanged(1));
-  ck_assert(exchanged(20));
+  for (const bool camera_moved : {false, true}) {
+    ck_assert(!exchanged(1, camera_moved));
+    ck_assert(exchanged(20, camera_moved));
+  }
 }
 END_TEST
 

@@ -187,6 +187,7 @@ void BackgroundModel::State::resample() {
     plane->swap(frame);
   }
   mosaic.restore(pixels(), to_frame);
+  classification.forget_candidates();
   to_frame = {};
   standing = 0;
 }

@@ -9,11 +9,13 @@
 namespace cerberus::vision {
 namespace {
 
-// swept: docs/quality.md. Guard of all: MOTA on TUD-Stadtmitte (bench-quality, bench-variants), unit candidate_background.
+// swept: docs/quality.md. Guard of all: the means of TUD-Stadtmitte (bench-variants), unit candidate_background.
 constexpr struct Parameters {
-  double lasting = 0.45;  // s that a candidate must have been seen in all,
-  int least_frames = 5;   // at least
-  // Grey levels within CandidateRow::kReach pixels: a frame counts only where it has an edge. Two coats alike are no candidate.
+  double lasting = 0.45;  // s for which a candidate must have been seen in all
+  // Frames, at least. derived: at 10 a second and less .45 s are so few that a passer may look alike in each.
+  int least_frames = 5;
+  // Grey levels within CandidateRow::kReach pixels: a frame counts only where it has an edge. Two coats alike are no
+  // candidate.
   std::uint8_t contrast = 12;
 } kParameters;
 
@@ -41,7 +43,7 @@ void CandidateBackground::update(const Pictures& pictures, const std::array<doub
   CandidateLimits limits;
   limits.contrast = kParameters.contrast;
   limits.least_seen = least_seen_;
-  // The same as a candidate is what would not certainly differ from it if it were the background.
+  // As far from a candidate is the same as the comparison tolerates from the background, without spread and edges.
   for (int c = 0; c < kBrightness; ++c)
     limits.same[c] = static_cast<std::uint8_t>(
         std::clamp(CompareLimits::strong_sigmas * noise[c], CompareLimits::strong_least / 16.0, 255.0));

@@ -36,7 +36,9 @@ HWY_INLINE void count(const CandidateRow& row, const CandidateLimits& limits, co
   const auto one = set(1), contrast = set(limits.contrast);
   constexpr int reach = CandidateRow::kReach;
   const auto f = load(row.frame), grey = load(row.grey), seen = load(row.seen);
-  const auto foreground = hn::LoadMaskBits(d, reinterpret_cast<const std::uint8_t*>(row.foreground) + x / 8);
+  std::uint8_t bits[8] = {};
+  std::memcpy(bits, reinterpret_cast<const std::uint8_t*>(row.foreground) + x / 8, kLanes / 8);
+  const auto foreground = hn::LoadMaskBits(d, bits);
 
   const auto e = difference(f, grey);
   const auto limit = hn::TableLookupBytes(hn::Load(d, same), hn::ShiftRight<4>(grey));
@@ -59,9 +61,8 @@ HWY_INLINE void count(const CandidateRow& row, const CandidateLimits& limits, co
   const auto lasts =
       hn::And(hn::And(foreground, shown), hn::And(hn::Gt(next_seen, set(limits.least_seen - 1)),
                                                   hn::Gt(next_seen, hn::ShiftRight<2>(load(row.age)))));
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, lasts, bytes);
-  std::memcpy(reinterpret_cast<std::uint8_t*>(row.lasting) + x / 8, bytes, kLanes / 8);
+  hn::StoreMaskBits(d, lasts, bits);
+  std::memcpy(reinterpret_cast<std::uint8_t*>(row.lasting) + x / 8, bits, kLanes / 8);
 }
 #endif
 

@@ -55,6 +55,9 @@ class ForegroundClassification {
     candidates_.set_period(seconds);
   }
 
+  // The model's pixels have moved while the camera stands.
+  void forget_candidates() { candidates_.reset(); }
+
   // mask in: D(k) > Th; out: the foreground, not closed. absorb := pixels that the model shall take over at once.
   // Counts model.quiet up, and limits model.age where the frame does not fit the model.
   void classify(const ClassificationInput& input, MutableBitView mask, MutableBitView absorb);

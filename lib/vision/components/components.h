@@ -41,7 +41,8 @@ struct ComponentInput {
   bool registered = false;     // it moves, and the model fits the frame nearly everywhere
   // The columns that the frame covers, per row; empty: all.
   std::span<const RowSpan> visible{};
-  BitView lasting{};  // foreground that has been the same for long, people who passed left out
+  // Foreground that has shown the same for long in all, between those who pass; empty: not known.
+  BitView lasting{};
 
   // Edges of the scene lie at the same pixels of the frame and of the background.
   bool is_aligned() const { return still || registered; }

@@ -12,11 +12,11 @@ namespace cerberus::vision {
 namespace {
 
 // Guard of all: unit-resting_ghosts, MOTA on TUD-Stadtmitte (bench-quality), where two people who stood at the start
-// leave ghosts: -.03 without this; its recall before a camera that moves (bench-moving_people): .16 without.
+// leave ghosts: -.03 without this and without candidates; its recall before a camera that moves (bench-moving_people): .16 without.
 constexpr struct Parameters {
   double least_area = 1 / 640.0;  // of the picture: what is smaller has too short an outline
   double least_seen = 0.25;  // of the outline that borders on the background; whoever passes hides the rest
-  // The same of what has been there for long in all. swept: docs/quality.md, .1 to .25.
+  // The same share, for places that `lasting` marks. swept: docs/quality.md, .1 to .25.
   double lasting_least_seen = 0.15;
   // As components.cpp: the outline is certainly the background's.
   double contrast_ratio = 2, contrast_margin = 4;
@@ -54,7 +54,7 @@ void RestingGhosts::remove_ghosts(const Pictures& pictures, double least_seen, L
   const Parameters& p = kParameters;
   const GrayView &f = pictures.frame, &b = pictures.background;
   const auto least = static_cast<std::uint32_t>(p.least_area * f.size().area());
-  if (count(places_.view()) < least) return;
+  if (count(places_.view()) < least) return;  // mostly so, and cheaper than labelling
   const auto components = labeller.find(places_.view(), f.width, least);
   if (components.size() > kMostComponents) return;
   std::array<Outline, kMostComponents> outlines{};

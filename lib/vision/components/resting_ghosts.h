@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Ghosts that people pass. The place of somebody who stood there when the scene began stays foreground after he has left,
 // and while others walk past it both are one component, which moves. What rests within the foreground is therefore judged
-// by itself: where it borders on the background, the edge of a ghost is in the background model and not in the frame.
+// by itself: where it borders on the background, the edge of a ghost is in the background model and not in the frame. So is
+// what has shown the same between those who pass (background/candidate_background.h), whether it rests now or not.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +21,8 @@ class RestingGhosts {
     GrayView quiet;              // frames since a pixel moved
     GrayView age;                // frames for which the model has learnt a pixel; empty: it has learnt all
     VisibleColumns visible;
-    BitView lasting{};  // foreground that has been the same for long in all, people who passed left out
+    // Foreground that has shown the same for long in all, between those who pass; empty: not known.
+    BitView lasting{};
   };
 
   void preallocate(Size picture) { places_.resize(bit_mask_size(picture)); }
