@@ -28,13 +28,17 @@ struct Place {
     candidates.preallocate(kSize);
     candidates.set_period(seconds);
   }
-  // The scene, or a coat of one grey level before it.
-  void see(int coat, int frames) {
+  // frame_at(x, y): grey levels.
+  template <typename FrameAt>
+  void see_frames(FrameAt&& frame_at, int frames) {
     for (int y = 0; y < kSize.height; ++y)
-      for (int x = 0; x < kSize.width; ++x)
-        frame.view().at(x, y) = static_cast<std::uint8_t>(coat > 0 ? coat : x / 4 % 2 ? 140 : 100);
+      for (int x = 0; x < kSize.width; ++x) frame.view().at(x, y) = static_cast<std::uint8_t>(frame_at(x, y));
     for (int n = 0; n < frames; ++n)
       candidates.update({frame.view(), foreground.view(), age.view(), quiet.view()}, noise);
+  }
+  // The scene, or a coat of one grey level before it.
+  void see(int coat, int frames) {
+    see_frames([coat](int x, int) { return coat > 0 ? coat : x / 4 % 2 ? 140 : 100; }, frames);
   }
   bool lasts() const { return bit_at(candidates.lasting().row(kY), kX); }
 };
@@ -58,11 +62,7 @@ END_TEST
 
 START_TEST(edges_across_count_as_those_along) {
   Place place(0.04, 20);
-  for (int y = 0; y < kSize.height; ++y)
-    std::fill_n(place.frame.view().row(y), kSize.width, static_cast<std::uint8_t>(y / 4 % 2 ? 140 : 100));
-  for (int n = 0; n < 12; ++n)
-    place.candidates.update(
-        {place.frame.view(), place.foreground.view(), place.age.view(), place.quiet.view()}, place.noise);
+  place.see_frames([](int, int y) { return y / 4 % 2 ? 140 : 100; }, 12);
   ck_assert(place.lasts());  // rows 28 and 32 are 140 and 100
 }
 END_TEST
@@ -125,13 +125,8 @@ END_TEST
 START_TEST(a_candidate_follows_the_light) {
   Place place(0.04, 20);
   place.see(0, 1);
-  for (int n = 1; n <= 20; ++n) {
-    for (int y = 0; y < kSize.height; ++y)
-      for (int x = 0; x < kSize.width; ++x)
-        place.frame.view().at(x, y) = static_cast<std::uint8_t>((x / 4 % 2 ? 140 : 100) + 2 * n);
-    place.candidates.update(
-        {place.frame.view(), place.foreground.view(), place.age.view(), place.quiet.view()}, place.noise);
-  }
+  for (int n = 1; n <= 20; ++n)
+    place.see_frames([n](int x, int) { return (x / 4 % 2 ? 140 : 100) + 2 * n; }, 1);
   ck_assert(place.lasts());
 }
 END_TEST

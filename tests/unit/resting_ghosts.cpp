@@ -41,6 +41,9 @@ struct Scene {
     for (int y = r.y; y < r.y + r.height; ++y) set_bits(mask.view().row(y), r.x, r.x + r.width);
     paint(quiet, r, since);
   }
+  void lasts(const Rect& r) {
+    for (int y = r.y; y < r.y + r.height; ++y) set_bits(lasting.view().row(y), r.x, r.x + r.width);
+  }
   void remove() {
     ghosts.remove({frame.view(), background.view(), quiet.view(), {}, {{}, kSize.width}, lasting.view()},
                   kRested, labeller, mask.view(), absorb.view());
@@ -123,8 +126,7 @@ START_TEST(a_ghost_whose_place_has_long_been_the_same_need_not_rest_now) {
     s.differs({40, 30, 20, kPlace.height - c.free}, 0);
     s.differs({80, 30, 20, kPlace.height - c.free}, 0);
     s.differs(kPlace, 0);
-    for (int y = kPlace.y; y < kPlace.y + kPlace.height && c.lasting; ++y)
-      set_bits(s.lasting.view().row(y), kPlace.x, kPlace.x + kPlace.width);
+    if (c.lasting) s.lasts(kPlace);
     s.remove();
     ck_assert_int_eq(count(s.mask, kPlace), c.taken ? 0 : all(kPlace));
     ck_assert_int_eq(count(s.absorb, kPlace), c.taken ? all(kPlace) : 0);
@@ -136,8 +138,7 @@ START_TEST(who_has_long_stood_there_stays) {
   Scene s;
   Scene::paint(s.frame, kPlace, 200);
   s.differs(kPlace, 0);
-  for (int y = kPlace.y; y < kPlace.y + kPlace.height; ++y)
-    set_bits(s.lasting.view().row(y), kPlace.x, kPlace.x + kPlace.width);
+  s.lasts(kPlace);
   s.remove();
   ck_assert_int_eq(count(s.mask, kPlace), all(kPlace));
 }

@@ -21,6 +21,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET != HWY_SCALAR
 constexpr int kLanes = 16;
+static_assert(kLanes == kBrightness);  // a vector holds the limits of all classes
 using D8 = hn::CappedTag<std::uint8_t, kLanes>;
 
 HWY_INLINE hn::Vec<D8> difference(hn::Vec<D8> a, hn::Vec<D8> b) {
@@ -28,8 +29,7 @@ HWY_INLINE hn::Vec<D8> difference(hn::Vec<D8> a, hn::Vec<D8> b) {
 }
 
 // The 16 pixels from x on; readable kReach pixels before and after them.
-HWY_INLINE void count(const CandidateRow& row, const CandidateLimits& limits, const std::uint8_t* same,
-                      int x) {
+HWY_INLINE void count(const CandidateRow& row, const CandidateLimits& limits, int x) {
   const D8 d;
   const auto load = [&](const std::uint8_t* p) HWY_ATTR { return hn::LoadU(d, p + x); };
   const auto set = [&](int v) HWY_ATTR { return hn::Set(d, static_cast<std::uint8_t>(v)); };
@@ -41,7 +41,7 @@ HWY_INLINE void count(const CandidateRow& row, const CandidateLimits& limits, co
   const auto foreground = hn::LoadMaskBits(d, bits);
 
   const auto e = difference(f, grey);
-  const auto limit = hn::TableLookupBytes(hn::Load(d, same), hn::ShiftRight<4>(grey));
+  const auto limit = hn::TableLookupBytes(hn::LoadU(d, limits.same.data()), hn::ShiftRight<4>(grey));
   const auto shown = hn::AndNot(hn::Gt(e, limit), hn::Gt(seen, hn::Zero(d)));
   const auto edge = hn::Max(difference(load(row.frame + reach), load(row.frame - reach)),
                             difference(load(row.below), load(row.above)));
@@ -70,8 +70,6 @@ void count_candidates(const CandidateRow& row, const CandidateLimits& limits) {
   std::fill_n(row.lasting, bit_mask_size({row.width, 1}).width, std::uint64_t{0});
 #if HWY_TARGET != HWY_SCALAR
   if (hn::Lanes(D8()) == kLanes) {
-    alignas(16) std::uint8_t same[kLanes];
-    std::memcpy(same, limits.same.data(), kLanes);
     for (int x = 0; x < row.width; x += kLanes) {
       std::uint16_t pixels;
       std::memcpy(&pixels, reinterpret_cast<const std::uint8_t*>(row.foreground) + x / 8, sizeof pixels);
@@ -79,7 +77,7 @@ void count_candidates(const CandidateRow& row, const CandidateLimits& limits) {
       if (x < CandidateRow::kReach || x + kLanes + CandidateRow::kReach > row.width)
         count_candidates_reference(row, limits, x, std::min(x + kLanes, row.width));
       else
-        count(row, limits, same, x);
+        count(row, limits, x);
     }
     return;
   }
