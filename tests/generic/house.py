@@ -237,6 +237,19 @@ def check_json(path):
             complain(path, f'is no JSON: {error}')
 
 
+def check_changelog():
+    """The newest version of the changelog is meson's, with a date, and a user reads it to its end."""
+    path = TOP / 'CHANGELOG.md'
+    text = path.read_text('utf-8')
+    built = re.search(r"^  version: '([^']+)'", (TOP / 'meson.build').read_text('utf-8'), re.MULTILINE).group(1)
+    newest = re.search(r'^## (.*)$', text, re.MULTILINE).group(1)
+    if not re.fullmatch(re.escape(f'[{built}]') + r' - \d{4}-\d\d-\d\d', newest):
+        complain(path, f'begins with "{newest}" and not with "[{built}] - YYYY-MM-DD", the version of meson.build')
+    for release in re.split(r'^## ', text, flags=re.MULTILINE)[1:]:
+        if len(release.splitlines()) > 80:
+            complain(path, f'{release.splitlines()[0]} has more than 80 lines')
+
+
 PAGES = {page.name for page in TOP.glob('*.md')}
 PAGES |= {page.name for folder in FOLDERS for page in (TOP / folder).rglob('*.md')}
 
@@ -265,5 +278,6 @@ for each in TOP.glob('*.md'):
 check_shared()
 check_folder_sizes()
 check_commands()
+check_changelog()
 print('\n'.join(complaints))
 sys.exit(1 if complaints else 0)
