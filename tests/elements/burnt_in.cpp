@@ -3,6 +3,7 @@
 // looks at: what motiondetect and the stages make of it.
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -43,9 +44,12 @@ std::vector<Box> reported(GstBus* bus) {
   std::vector<Box> boxes;
   while (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_INFO)) {
     g_autoptr(GError) error = nullptr;
-    gst_message_parse_info(message, &error, nullptr);
+    g_autofree gchar* detail = nullptr;
+    gst_message_parse_info(message, &error, &detail);
     gst_message_unref(message);
     const std::string text = error->message;
+    // gst-launch-1.0 prints the detail only.
+    fail_unless(strstr(detail, text.c_str()) && strstr(detail, "burnt-in=false"), "%s", detail);
     constexpr char kBefore[] = "left out: ";
     const std::size_t at = text.find(kBefore);
     fail_unless(at != std::string::npos, "%s", text.c_str());

@@ -39,6 +39,7 @@ struct Origin {
 };
 
 // An empty text stands for GStreamer's own, an empty detail for none. Takes `facts`, for programs; may be nullptr.
+// gst-launch-1.0 prints only the detail of an INFO message, so the text is repeated there.
 inline void post(GstElement* element, GstMessageType type, GQuark domain, gint code, const std::string& text,
                  const std::string& detail, GstStructure* facts, const Origin& from) noexcept {
   const GstDebugLevel level = type == GST_MESSAGE_INFO ? GST_LEVEL_INFO : GST_LEVEL_WARNING;
@@ -47,7 +48,9 @@ inline void post(GstElement* element, GstMessageType type, GQuark domain, gint c
       gst_debug_log(from.category, level, from.file, from.function, from.line, G_OBJECT(element), "%s: %s",
                     gst_message_type_get_name(type), said->c_str());
   const auto copy = [](const std::string& said) { return said.empty() ? nullptr : g_strdup(said.c_str()); };
-  gst_element_message_full_with_details(element, type, domain, code, copy(text), copy(detail), from.file,
+  const bool repeats = type == GST_MESSAGE_INFO && !text.empty();
+  const std::string printed = !repeats ? detail : detail.empty() ? text : text + "\n" + detail;
+  gst_element_message_full_with_details(element, type, domain, code, copy(text), copy(printed), from.file,
                                         from.function, from.line, facts);
 }
 
