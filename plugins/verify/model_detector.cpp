@@ -9,11 +9,12 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
 #include "vision/verification/network_output.h"
-#include "vision/verification/onnx_input.h"
+#include "vision/verification/onnx_file.h"
 
 namespace cerberus::plugin {
 
@@ -22,14 +23,27 @@ namespace {
 constexpr double kBorder = 114;  // grey level around a picture of another aspect, as YOLO models are trained
 constexpr double kWhite = 255;   // becomes 1
 
+// The outputs are none that NetworkReader reads.
+class NotRead : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 class ModelDetector : public vision::PersonDetector {
  public:
-  ModelDetector(cv::dnn::Net net, vision::Size input, int person, double threshold)
-      : net_(std::move(net)),
-        names_(net_.getUnconnectedOutLayersNames()),
+  ModelDetector(const std::string& name, std::span<const std::uint8_t> model, vision::Size input,
+                vision::PersonClass person, double threshold)
+      : name_(name),
+        net_(cv::dnn::readNetFromONNX(reinterpret_cast<const char*>(model.data()), model.size())),
+        outputs_of_net_(net_.getUnconnectedOutLayersNames()),
+        reader_(input, person),
         input_(input),
-        person_(person),
-        threshold_(threshold) {}
+        threshold_(threshold) {
+    // Once on an empty picture: layers that OpenCV cannot run, and outputs that cannot be read, are reported now.
+    const vision::Image<std::uint8_t> nothing(input);
+    std::vector<vision::PersonDetection> none;
+    detect(nothing.view(), 1, none);
+  }
 
   void detect(vision::GrayView picture, double, std::vector<vision::PersonDetection>& hits) override {
     // OpenCV's Mat takes no constant data; nothing writes through this one.
@@ -44,20 +58,17 @@ class ModelDetector : public vision::PersonDetector {
     framed_.setTo(cv::Scalar(kBorder));
     scaled_.copyTo(framed_(cv::Rect({0, 0}, inner)));
     cv::cvtColor(framed_, colours_, cv::COLOR_GRAY2BGR);
-    cv::dnn::blobFromImage(colours_, blob_, 1 / kWhite);
+    cv::dnn::blobFromImage(colours_, blob_, reader_.takes_bytes() ? 1 : 1 / kWhite);
     net_.setInput(blob_);
-    net_.forward(results_, names_);
+    net_.forward(results_, outputs_of_net_);
     outputs_.clear();
-    for (const cv::Mat& result : results_) {
-      if (result.type() != CV_32F || !result.isContinuous())
-        throw std::runtime_error("an output of the model is not of floats");
-      outputs_.push_back(
-          {{result.ptr<float>(), result.total()}, {result.size.p, result.size.p + result.dims}});
-    }
+    for (const cv::Mat& result : results_)
+      if (result.type() == CV_32F && result.isContinuous())
+        outputs_.push_back(
+            {{result.ptr<float>(), result.total()}, {result.size.p, result.size.p + result.dims}});
     const std::size_t before = hits.size();
-    if (!vision::read_persons(outputs_, input_, person_, threshold_, hits))
-      throw std::runtime_error(
-          "the outputs of the model are not those of a YOLO or SSD network with this class");
+    if (const auto wrong = reader_.read(outputs_, threshold_, hits))
+      throw NotRead("The model " + name_ + " cannot be used: " + *wrong);
     for (std::size_t i = before; i < hits.size(); ++i) {
       vision::Box& box = hits[i].box;
       box = {box.x / scale, box.y / scale, box.width / scale, box.height / scale};
@@ -65,24 +76,27 @@ class ModelDetector : public vision::PersonDetector {
   }
 
  private:
+  const std::string name_;
   cv::dnn::Net net_;
-  std::vector<cv::String> names_;
-  vision::Size input_;
-  int person_;
-  double threshold_;
+  const std::vector<cv::String> outputs_of_net_;
+  vision::NetworkReader reader_;
+  const vision::Size input_;
+  const double threshold_;
   cv::Mat scaled_, framed_, colours_, blob_;
   std::vector<cv::Mat> results_;
   std::vector<vision::NetworkOutput> outputs_;
 };
 
-// The number of the line `person`.
-std::optional<int> person_in(std::istream& labels) {
+// The number of the line `person`; empty lines at the end are no class.
+std::optional<vision::PersonClass> person_in(std::istream& labels) {
+  vision::PersonClass person;
   std::string line;
-  for (int n = 0; std::getline(labels, line); ++n) {
+  for (int n = 1; std::getline(labels, line); ++n) {
     if (line.ends_with('\r')) line.pop_back();
-    if (line == "person") return n;
+    if (!line.empty()) person.classes = n;
+    if (line == "person" && person.number < 0) person.number = n - 1;
   }
-  return std::nullopt;
+  return person.number < 0 ? std::nullopt : std::optional(person);
 }
 
 }  // namespace
@@ -99,7 +113,7 @@ std::unique_ptr<vision::PersonDetector> make_model_detector(const std::string& m
                    " is no ONNX file with an input of 1 x 3 x height x width numbers: export it with a fixed "
                    "size.",
            nullptr;
-  int person = -1;
+  vision::PersonClass person;
   if (!labels.empty()) {
     std::ifstream lines(labels);
     if (!lines) return wrong = "The labels " + labels + " cannot be read.", nullptr;
@@ -107,15 +121,19 @@ std::unique_ptr<vision::PersonDetector> make_model_detector(const std::string& m
     if (!line) return wrong = "The labels " + labels + " have no line that says person.", nullptr;
     person = *line;
   }
+  const auto detector = [&](std::span<const std::uint8_t> file_bytes) {
+    return std::make_unique<ModelDetector>(model, file_bytes, *input, person, threshold);
+  };
   try {
-    auto detector = std::make_unique<ModelDetector>(
-        cv::dnn::readNetFromONNX(reinterpret_cast<const char*>(bytes.data()), bytes.size()), *input, person,
-        threshold);
-    // Once on an empty picture: layers that OpenCV cannot run, and heads that are not known, are reported now.
-    vision::Image<std::uint8_t> nothing(*input);
-    std::vector<vision::PersonDetection> none;
-    detector->detect(nothing.view(), 1, none);
-    return detector;
+    try {
+      return detector(bytes);
+    } catch (const cv::Exception&) {
+      const auto other = vision::onnx_with_full_factors(bytes);
+      if (!other) throw;
+      return detector(*other);
+    }
+  } catch (const NotRead& e) {
+    return wrong = e.what(), nullptr;
   } catch (const std::exception& e) {
     return wrong = "The model " + model + " cannot be run by OpenCV " + CV_VERSION + ": " + e.what(), nullptr;
   }

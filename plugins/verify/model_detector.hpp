@@ -9,7 +9,7 @@
 
 namespace cerberus::plugin {
 
-// model: an ONNX file with a head that vision::read_persons() reads. labels: a file with the name of a class in each
+// model: an ONNX file with outputs that vision::NetworkReader reads. labels: a file with the name of a class in each
 // line, of which one is `person`; empty: the first class is. threshold: of the score, 0 to 1. Where it cannot be used,
 // returns nullptr, and in `wrong` a sentence that says why.
 std::unique_ptr<vision::PersonDetector> make_model_detector(const std::string& model,

@@ -268,19 +268,71 @@ GST_START_TEST(a_model_of_the_users_finds_people_in_place_of_the_usual_detector)
 }
 GST_END_TEST
 
+namespace {
+
+// The persons that a network finds in a picture with one moving thing.
+std::size_t persons_by(const std::string& network, const char* properties = "") {
+  const TemporaryFile model(network);
+  Verifier verifier(("model=" + model.path() + " " + properties).c_str());
+  const auto found = regions_after(verifier, 8, {}, true, {region(3, 100, 80, 117, 90)});
+  return static_cast<std::size_t>(
+      std::ranges::count_if(found, [](const CerberusRegion& r) { return r.person; }));
+}
+
+// `boxes` rows: the first one, and zeros.
+std::vector<float> rows(int boxes, std::vector<float> first) {
+  first.resize(first.size() * static_cast<std::size_t>(boxes), 0);
+  return first;
+}
+
+}  // namespace
+
+// 20 x 6: left, top, right, bottom, score, class. Read as YOLO 5's, the car (class 2) is a person with a score of 1.76.
+GST_START_TEST(a_car_of_a_network_with_boxes_end_to_end_is_no_person) {
+  namespace onnx = cerberus::tests::onnx;
+  const auto network = [](float kind) {
+    return onnx::constant_network(64, {{"output0", {1, 20, 6}, rows(20, {24, 2, 40, 62, .88f, kind})}});
+  };
+  fail_unless_equals_int(persons_by(network(2)), 0);
+  fail_unless_equals_int(persons_by(network(0)), 1);
+}
+GST_END_TEST
+
+// OpenCV 4.6 does not multiply 1 x 4 x 64 by 1 x 64.
+GST_START_TEST(a_network_whose_boxes_are_multiplied_by_the_size_of_their_cells_runs) {
+  fail_unless_equals_int(
+      persons_by(cerberus::tests::onnx::constant_yolo_in_cells(64, {4, 4, 2, 7.5f}, {.9f, .1f})), 1);
+}
+GST_END_TEST
+
+GST_START_TEST(of_several_outputs_of_a_model_the_list_of_boxes_is_read) {
+  namespace onnx = cerberus::tests::onnx;
+  std::vector<float> map(3 * 8 * 8 * 7, -4), list = rows(252, {32, 32, 16, 60, .9f, .9f, .1f});
+  fail_unless_equals_int(persons_by(onnx::constant_network(64, {{"map", {1, 3, 8, 8, 7}, map},
+                                                                {"list", {1, 252, 7}, list},
+                                                                {"other", {1, 3, 4, 16, 7}, map}})),
+                         1);
+}
+GST_END_TEST
+
 GST_START_TEST(a_wrong_model_is_an_error_that_names_it) {
   namespace onnx = cerberus::tests::onnx;
   const TemporaryFile good(onnx::constant_yolo(64, {32, 32, 16, 60, 0.9f})), text("not a model"),
       labels("cat\ndog\n"), shapeless(onnx::model(onnx::bytes(11, onnx::value_info("x", {1, 3, 0, 0})))),
-      strange(onnx::constant_yolo(64, {1, 2, 3, 4}));
+      strange(onnx::constant_yolo(64, {1, 2, 3, 4})),
+      logits(onnx::constant_yolo(64, {32, 32, 16, 60, -4.5f})),
+      sizeless(onnx::constant_yolo(64, {32, 32, -1, 60, .9f, .1f}));
   const struct {
     std::string properties, says;
-  } cases[] = {{"model=/nowhere.onnx", "/nowhere.onnx cannot be read"},
-               {"model=" + text.path(), text.path() + " is no ONNX file"},
-               {"model=" + shapeless.path(), "fixed size"},
-               {"model=" + strange.path(), "not those of a YOLO or SSD"},
-               {"model=" + good.path() + " labels=/nowhere.txt", "/nowhere.txt cannot be read"},
-               {"model=" + good.path() + " labels=" + labels.path(), "no line that says person"}};
+  } cases[] = {
+      {"model=/nowhere.onnx", "/nowhere.onnx cannot be read"},
+      {"model=" + text.path(), text.path() + " is no ONNX file"},
+      {"model=" + shapeless.path(), "fixed size"},
+      {"model=" + strange.path(), strange.path() + " cannot be used: its output 1 x 4 x 64 cannot be read"},
+      {"model=" + logits.path(), "1 x 5 x 64 cannot be read: scores are no probabilities (-4.5"},
+      {"model=" + sizeless.path(), "1 x 6 x 64 cannot be read: boxes have no size"},
+      {"model=" + good.path() + " labels=/nowhere.txt", "/nowhere.txt cannot be read"},
+      {"model=" + good.path() + " labels=" + labels.path(), "no line that says person"}};
   for (const auto& each : cases) {
     GstElement* element = gst_parse_launch(("personverify " + each.properties).c_str(), nullptr);
     GstBus* bus = gst_bus_new();
@@ -331,6 +383,9 @@ Suite* personverify_suite() {
   tcase_add_test(tests, live_no_frame_waits_and_the_result_comes_later);
   tcase_add_test(tests, regions_of_interest_of_other_elements_are_verified_too);
   tcase_add_test(tests, a_model_of_the_users_finds_people_in_place_of_the_usual_detector);
+  tcase_add_test(tests, a_car_of_a_network_with_boxes_end_to_end_is_no_person);
+  tcase_add_test(tests, a_network_whose_boxes_are_multiplied_by_the_size_of_their_cells_runs);
+  tcase_add_test(tests, of_several_outputs_of_a_model_the_list_of_boxes_is_read);
   tcase_add_test(tests, a_wrong_model_is_an_error_that_names_it);
   tcase_add_test(tests, after_a_flush_and_with_other_caps_it_begins_anew);
   return suite;

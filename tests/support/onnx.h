@@ -51,21 +51,80 @@ inline std::string model(const std::string& graph) {
   return number(1, 7) + bytes(7, graph) + bytes(8, number(2, 11));
 }
 
+// NodeProto. attributes: of integers(), or empty.
+inline std::string node(const std::string& type, const std::vector<std::string>& inputs,
+                        const std::string& output, const std::string& attributes = {}) {
+  std::string all;
+  for (const std::string& input : inputs) all += bytes(1, input);
+  return bytes(1, all + bytes(2, output) + bytes(3, output) + bytes(4, type) + attributes);
+}
+inline std::string weights(const std::string& name, const std::vector<int>& shape,
+                           const std::vector<float>& values) {
+  return bytes(5, tensor(name, 1, shape, values));
+}
+inline std::string reshape(const std::string& input, const std::string& output,
+                           const std::vector<int>& shape) {
+  const std::vector<std::int64_t> lengths(shape.begin(), shape.end());
+  return node("Reshape", {input, output + "_shape"}, output) +
+         bytes(5, tensor(output + "_shape", 7, {static_cast<int>(shape.size())}, lengths));
+}
+// Convolution of weights 0: the numbers, once for each cell of 8 x 8 pixels.
+inline std::string cells(const std::string& name, const std::vector<float>& numbers) {
+  const int n = static_cast<int>(numbers.size());
+  return node("Conv", {"images", name + "_weights", name + "_bias"}, name,
+              integers("kernel_shape", {8, 8}) + integers("strides", {8, 8})) +
+         weights(name + "_weights", {n, 3, 8, 8},
+                 std::vector<float>(static_cast<std::size_t>(n) * 3 * 8 * 8, 0)) +
+         weights(name + "_bias", {n}, numbers);
+}
+
 // A network that answers every picture of `side` x `side` pixels with the same column of numbers, (side / 8)^2 times:
-// 1 x numbers x boxes, as YOLO 8 does. It is a convolution of weights 0, whose bias are the numbers.
+// 1 x numbers x boxes, as YOLO 8 does.
 inline std::string constant_yolo(int side, const std::vector<float>& numbers) {
   const int n = static_cast<int>(numbers.size()), boxes = side / 8 * (side / 8);
-  const std::vector<float> weights(static_cast<std::size_t>(n) * 3 * 8 * 8, 0);
-  const std::string convolution = bytes(1, "images") + bytes(1, "weights") + bytes(1, "bias") +
-                                  bytes(2, "cells") + bytes(3, "conv") + bytes(4, "Conv") +
-                                  integers("kernel_shape", {8, 8}) + integers("strides", {8, 8});
-  const std::string reshape =
-      bytes(1, "cells") + bytes(1, "shape") + bytes(2, "output0") + bytes(3, "reshape") + bytes(4, "Reshape");
-  return model(
-      bytes(1, convolution) + bytes(1, reshape) + bytes(2, "constant") +
-      bytes(5, tensor("weights", 1, {n, 3, 8, 8}, weights)) + bytes(5, tensor("bias", 1, {n}, numbers)) +
-      bytes(5, tensor("shape", 7, {3}, std::vector<std::int64_t>{1, n, boxes})) +
-      bytes(11, value_info("images", {1, 3, side, side})) + bytes(12, value_info("output0", {1, n, boxes})));
+  return model(cells("cells", numbers) + reshape("cells", "output0", {1, n, boxes}) + bytes(2, "constant") +
+               bytes(11, value_info("images", {1, 3, side, side})) +
+               bytes(12, value_info("output0", {1, n, boxes})));
+}
+
+// The same, with boxes in cells that are multiplied by the size of a cell at the end, as Ultralytics' tools write YOLO 8:
+// the boxes are 1 x 4 x boxes, the sizes 1 x boxes.
+inline std::string constant_yolo_in_cells(int side, const std::vector<float>& box,
+                                          const std::vector<float>& scores) {
+  const int n = static_cast<int>(scores.size()), boxes = side / 8 * (side / 8);
+  return model(cells("in_cells", box) + reshape("in_cells", "boxes", {1, 4, boxes}) +
+               weights("sizes", {1, boxes}, std::vector<float>(static_cast<std::size_t>(boxes), 8)) +
+               node("Mul", {"boxes", "sizes"}, "in_pixels") + cells("class_cells", scores) +
+               reshape("class_cells", "scores", {1, n, boxes}) +
+               node("Concat", {"in_pixels", "scores"}, "output0",
+                    bytes(5, bytes(1, "axis") + number(3, 1) + number(20, 2))) +
+               bytes(2, "constant") + bytes(11, value_info("images", {1, 3, side, side})) +
+               bytes(12, value_info("output0", {1, 4 + n, boxes})));
+}
+
+struct Output {
+  std::string name;
+  std::vector<int> shape;
+  std::vector<float> values;
+};
+
+// A network that answers every picture of `side` x `side` pixels with these outputs.
+inline std::string constant_network(int side, const std::vector<Output>& outputs) {
+  std::string graph =
+      node("Conv", {"images", "none", "zero"}, "nothing",
+           integers("kernel_shape", {side, side}) + integers("strides", {side, side})) +
+      weights("none", {1, 3, side, side}, std::vector<float>(static_cast<std::size_t>(side) * side * 3, 0)) +
+      weights("zero", {1}, {0});
+  for (const Output& output : outputs) {
+    const int total = static_cast<int>(output.values.size());
+    graph += weights(output.name + "_zeros", {total, 1, 1, 1}, std::vector<float>(output.values.size(), 0)) +
+             weights(output.name + "_values", {total}, output.values) +
+             node("Conv", {"nothing", output.name + "_zeros", output.name + "_values"}, output.name + "_row",
+                  integers("kernel_shape", {1, 1})) +
+             reshape(output.name + "_row", output.name, output.shape) +
+             bytes(12, value_info(output.name, output.shape));
+  }
+  return model(graph + bytes(2, "constant") + bytes(11, value_info("images", {1, 3, side, side})));
 }
 
 }  // namespace cerberus::tests::onnx

@@ -11,11 +11,8 @@
 #include <vector>
 
 #include "support/allocations.h"
-#include "support/onnx.h"
 #include "support/suite.h"
 #include "vision/verification/look_worker.h"
-#include "vision/verification/network_output.h"
-#include "vision/verification/onnx_input.h"
 #include "vision/verification/patch_matching.h"
 
 using namespace cerberus::vision;
@@ -489,69 +486,6 @@ START_TEST(the_worker_returns_what_its_detector_found_or_threw) {
 }
 END_TEST
 
-START_TEST(the_input_size_of_an_onnx_model_is_read_from_its_file) {
-  namespace onnx = cerberus::tests::onnx;
-  const auto size_in = [](const std::string& file) {
-    return onnx_input_size({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()});
-  };
-  const std::string good = onnx::constant_yolo(64, {1, 2, 3, 4, 5});
-  ck_assert(size_in(good) == Size(64, 64));
-  const auto with_input = [](std::vector<int> shape) {
-    return onnx::model(onnx::bytes(11, onnx::value_info("weight", {8, 3})) +
-                       onnx::bytes(11, onnx::value_info("x", std::move(shape))));
-  };
-  ck_assert(size_in(with_input({0, 3, 480, 640})) == Size(640, 480));
-  for (const auto& shape : std::vector<std::vector<int>>{
-           {1, 3, 0, 0}, {1, 4, 64, 64}, {1, 3, 64}, {2, 3, 64, 64}, {1, 3, 9000, 64}})
-    ck_assert(!size_in(with_input(shape)));
-  for (const char* text : {"", "not a model", "\x08", "\x3a\xff\xff\xff\xff\x7f"}) ck_assert(!size_in(text));
-  for (std::size_t n = 0; n < good.size(); n += 7) size_in(good.substr(0, n));  // reads nothing beyond
-}
-END_TEST
-
-START_TEST(persons_are_read_from_the_outputs_of_yolo_and_ssd) {
-  const Size input{100, 200};
-  const auto expect = [&](const std::vector<NetworkOutput>& outputs, int person, std::size_t count) {
-    std::vector<PersonDetection> hits;
-    ck_assert(read_persons(outputs, input, person, 0.5, hits));
-    ck_assert_uint_eq(hits.size(), count);
-    if (count == 0) return;
-    ck_assert_double_eq_tol(hits[0].box.x, 20, 1e-4);
-    ck_assert_double_eq_tol(hits[0].box.y, 60, 1e-4);
-    ck_assert_double_eq_tol(hits[0].box.width, 20, 1e-4);
-    ck_assert_double_eq_tol(hits[0].box.height, 80, 1e-4);
-    ck_assert_double_eq_tol(hits[0].score, 0.72, 1e-4);
-  };
-  // Version 5, two classes: an object of .9 that is a person by .8; no object; the other class. More boxes than
-  // numbers.
-  const std::vector<float> five{30,  100, 20, 80, .9f, .8f, .1f, 30,  100, 20, 80,
-                                .1f, .9f, 0,  30, 100, 20,  80,  .9f, .1f, .9f};
-  std::vector<float> five_more = five;
-  five_more.resize(8 * 7, 0);
-  expect({{five_more, {1, 8, 7}}}, -1, 1);
-  // Version 8: the same boxes, number after number.
-  std::vector<float> eight(6 * 8, 0);
-  const float column[] = {30, 100, 20, 80, .72f, .1f};
-  for (int n = 0; n < 6; ++n) eight[static_cast<std::size_t>(n) * 8 + 3] = column[n];
-  expect({{eight, {1, 6, 8}}}, -1, 1);
-  expect({{eight, {1, 6, 8}}}, 1, 0);
-  // SSD, one output: class 1 is the first after the background.
-  const std::vector<float> ssd{0, 1, .72f, .2f, .3f, .4f, .7f, 0, 2, .9f, .2f, .3f, .4f, .7f};
-  expect({{ssd, {1, 1, 2, 7}}}, -1, 1);
-  // SSD, two outputs, in either order.
-  const std::vector<float> boxes{.2f, .3f, .4f, .7f, 0, 0, 1, 1}, scores{.2f, .72f, .1f, .9f, .05f, .05f};
-  expect({{boxes, {1, 2, 4}}, {scores, {1, 2, 3}}}, -1, 1);
-  expect({{scores, {1, 2, 3}}, {boxes, {1, 2, 4}}}, -1, 1);
-  std::vector<PersonDetection> hits;
-  ck_assert(!read_persons(std::vector<NetworkOutput>{{eight, {1, 6, 7}}}, input, -1, 0.5,
-                          hits));  // another size than its values
-  ck_assert(
-      !read_persons(std::vector<NetworkOutput>{{eight, {1, 6, 8}}}, input, 2, 0.5, hits));  // no such class
-  ck_assert(!read_persons(std::vector<NetworkOutput>{{eight, {48}}}, input, -1, 0.5, hits));
-  ck_assert(!read_persons({}, input, -1, 0.5, hits));
-}
-END_TEST
-
 // Where the camera stands, a place that changes is looked at before there is a track. Who walks there is a person at once;
 // who only came into sight is one in the second look.
 START_TEST(a_person_whom_no_track_shows_is_found_where_the_picture_changes) {
@@ -605,7 +539,5 @@ int main() {
        a_region_without_identity_keeps_that_of_the_one_before_which_it_overlaps_most,
        following_and_choosing_allocate_nothing,
        the_worker_returns_what_its_detector_found_or_threw,
-       the_input_size_of_an_onnx_model_is_read_from_its_file,
-       persons_are_read_from_the_outputs_of_yolo_and_ssd,
        a_person_whom_no_track_shows_is_found_where_the_picture_changes});
 }

@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "vision/verification/network_output.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cerberus::vision {
 
 namespace {
 
-constexpr int kBox = 4;  // numbers of a box
-
-std::vector<int> without_ones(const std::vector<int>& shape, std::size_t least) {
-  std::vector<int> rest = shape;
-  while (rest.size() > least && rest.front() == 1) rest.erase(rest.begin());
-  return rest;
-}
+// What rounding in a network adds to a score. Derived: ten times what half precision does.
+constexpr double kRounding = 0.01;
 
 std::size_t size_of(const std::vector<int>& shape) {
   std::size_t size = 1;
@@ -21,73 +17,91 @@ std::size_t size_of(const std::vector<int>& shape) {
   return size;
 }
 
-void add(std::vector<PersonDetection>& hits, double left, double top, double width, double height,
-         double score) {
-  const bool sane = std::isfinite(left) && std::isfinite(top) && std::isfinite(width) &&
-                    std::isfinite(height) && width > 0 && height > 0;
-  if (sane) hits.push_back({{left, top, width, height}, score});
+// "its output 1 x 6 x 300", or "its outputs 1 x 300 x 4, 1 x 300 x 80".
+std::string shapes_of(std::span<const NetworkOutput> outputs) {
+  std::string all = outputs.size() == 1 ? "its output" : "its outputs";
+  for (std::size_t i = 0; i < outputs.size(); ++i)
+    for (std::size_t n = 0; n < outputs[i].shape.size(); ++n)
+      all += (n > 0 ? " x " : i > 0 ? ", " : " ") + std::to_string(outputs[i].shape[n]);
+  return all;
 }
 
-bool read_yolo(const NetworkOutput& output, const std::vector<int>& shape, int person, double threshold,
-               std::vector<PersonDetection>& hits) {
-  const bool by_box = shape[0] > shape[1];  // version 5: a box after the other
-  const int boxes = by_box ? shape[0] : shape[1], numbers = by_box ? shape[1] : shape[0];
-  const int first = by_box ? kBox + 1 : kBox, wanted = first + std::max(person, 0);
-  if (wanted >= numbers) return false;
-  const auto at = [&](int box, int n) -> double {
-    return output.values[by_box ? static_cast<std::size_t>(box) * numbers + n
-                                : static_cast<std::size_t>(n) * boxes + box];
-  };
-  for (int i = 0; i < boxes; ++i) {
-    const double score = at(i, wanted) * (by_box ? at(i, kBox) : 1);
-    if (score >= threshold)
-      add(hits, at(i, 0) - at(i, 2) / 2, at(i, 1) - at(i, 3) / 2, at(i, 2), at(i, 3), score);
-  }
-  return true;
+// What is not finite is no score of a person, and no mistake of the layout.
+bool is_score(double value) {
+  return !std::isfinite(value) || (value >= -kRounding && value <= 1 + kRounding);
 }
 
-void read_ssd(const NetworkOutput& output, int boxes, Size input, int person, double threshold,
-              std::vector<PersonDetection>& hits) {
-  for (int i = 0; i < boxes; ++i) {
-    const auto n = output.values.subspan(static_cast<std::size_t>(i) * 7, 7);
-    if (n[2] >= threshold && static_cast<int>(n[1]) == person)
-      add(hits, n[3] * input.width, n[4] * input.height, (n[5] - n[3]) * input.width,
-          (n[6] - n[4]) * input.height, n[2]);
+// Boxes of YOLOX that are not decoded: cells of all sides row by row, the smallest first.
+// x = (cell + dx) side, width = exp(dw) side.
+Box decoded(const NetworkTable& table, int i, Size input, std::span<const int> sides) {
+  int cell = i;
+  for (const int side : sides) {
+    const int columns = (input.width + side - 1) / side, rows = (input.height + side - 1) / side;
+    if (cell >= columns * rows) {
+      cell -= columns * rows;
+      continue;
+    }
+    const double width = std::exp(table.at(i, 2)) * side, height = std::exp(table.at(i, 3)) * side;
+    return {(cell % columns + table.at(i, 0)) * side - width / 2,
+            (cell / columns + table.at(i, 1)) * side - height / 2, width, height};
   }
+  return {};
+}
+
+Box box_of(const NetworkTable& table, int i, const NetworkLayout& layout, Size input) {
+  const auto n = [&](int k) { return table.at(i, layout.first + k); };
+  if (layout.box == NetworkLayout::Box::cells) {
+    const auto sides = cells_of(input, table.boxes);
+    return sides ? decoded(table, i, input, *sides) : Box{};
+  }
+  const double across = layout.in_shares ? input.width : 1, down = layout.in_shares ? input.height : 1;
+  if (layout.box == NetworkLayout::Box::corners)
+    return {n(0) * across, n(1) * down, (n(2) - n(0)) * across, (n(3) - n(1)) * down};
+  return {(n(0) - n(2) / 2) * across, (n(1) - n(3) / 2) * down, n(2) * across, n(3) * down};
 }
 
 }  // namespace
 
-bool read_persons(std::span<const NetworkOutput> outputs, Size input, int person, double threshold,
-                  std::vector<PersonDetection>& hits) {
+// Returns what is wrong.
+std::string NetworkReader::read_rows(std::span<const NetworkOutput> outputs, double threshold,
+                                     std::vector<PersonDetection>& hits) const {
+  const NetworkLayout& layout = *layout_;
+  const auto count = static_cast<int>(outputs.size());
+  if (layout.boxes_output >= count || layout.scores_output >= count) return "there are fewer than before";
+  const auto boxes =
+      table_of(outputs[static_cast<std::size_t>(layout.boxes_output)], layout.box_numbers, layout.by_box);
+  const auto scores =
+      table_of(outputs[static_cast<std::size_t>(layout.scores_output)], layout.score_numbers, layout.by_box);
+  if (!boxes || !scores || boxes->boxes != scores->boxes) return "the shape was another one before";
+  for (int i = 0; i < boxes->boxes; ++i) {
+    if (!boxes->holds_box(i, layout.first)) continue;
+    double score = scores->at(i, layout.score);
+    const double object = layout.object_score < 0 ? 1 : scores->at(i, layout.object_score);
+    if (!is_score(score) || !is_score(object))
+      return "scores are no probabilities (" + std::to_string(is_score(score) ? object : score) +
+             "): export it with the sigmoid or softmax of its scores";
+    if (layout.class_column >= 0 && scores->at(i, layout.class_column) != layout.person) continue;
+    score = std::min(score * object, 1.0);
+    if (!(score >= threshold)) continue;
+    const Box box = box_of(*boxes, i, layout, input_);
+    if (!std::isfinite(box.width) || !std::isfinite(box.height)) continue;
+    if (box.width <= 0 || box.height <= 0) return "boxes have no size: export it with its boxes decoded";
+    hits.push_back({box, score});
+  }
+  return {};
+}
+
+std::optional<std::string> NetworkReader::read(std::span<const NetworkOutput> outputs, double threshold,
+                                               std::vector<PersonDetection>& hits) {
+  std::string wrong;
   for (const NetworkOutput& output : outputs)
-    if (output.values.size() != size_of(output.shape)) return false;
-  const int after_background = person < 0 ? 1 : person;
-  if (outputs.size() == 1) {
-    const auto shape = without_ones(outputs[0].shape, 2);
-    if (shape.size() != 2) return false;
-    if (outputs[0].shape.size() == 4) {
-      if (shape[1] != 7) return false;
-      read_ssd(outputs[0], shape[0], input, after_background, threshold, hits);
-      return true;
-    }
-    return read_yolo(outputs[0], shape, person, threshold, hits);
-  }
-  if (outputs.size() != 2) return false;
-  auto first = without_ones(outputs[0].shape, 2), second = without_ones(outputs[1].shape, 2);
-  if (first.size() != 2 || second.size() != 2 || first[0] != second[0]) return false;
-  const bool boxes_first = first[1] == kBox;
-  const NetworkOutput &boxes = outputs[boxes_first ? 0 : 1], &scores = outputs[boxes_first ? 1 : 0];
-  const int classes = boxes_first ? second[1] : first[1];
-  if ((boxes_first ? first[1] : second[1]) != kBox || after_background >= classes) return false;
-  for (int i = 0; i < first[0]; ++i) {
-    const double score = scores.values[static_cast<std::size_t>(i) * classes + after_background];
-    const auto n = boxes.values.subspan(static_cast<std::size_t>(i) * kBox, kBox);
-    if (score >= threshold)
-      add(hits, n[0] * input.width, n[1] * input.height, (n[2] - n[0]) * input.width,
-          (n[3] - n[1]) * input.height, score);
-  }
-  return true;
+    if (output.values.size() != size_of(output.shape)) wrong = "the shape has another size than the numbers";
+  if (wrong.empty() && !layout_) layout_ = decide_layout(outputs, input_, person_, wrong);
+  const std::size_t before = hits.size();
+  if (wrong.empty() && layout_) wrong = read_rows(outputs, threshold, hits);
+  if (wrong.empty()) return std::nullopt;
+  hits.resize(before);
+  return shapes_of(outputs) + " cannot be read: " + wrong + ".";
 }
 
 }  // namespace cerberus::vision

@@ -2,26 +2,48 @@
 // Persons in the output of a neural network that detects objects.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "vision/verification/network_layout.h"
 #include "vision/verification/person_detector.h"
 
 namespace cerberus::vision {
 
-struct NetworkOutput {
-  std::span<const float> values;
-  std::vector<int> shape;
-};
+// Reads the outputs of a network, run by run. The first run that returns any box decides the layout (N boxes, C classes;
+// N x K may also be K x N, with a batch of 1 or without one):
+// - YOLO 5 and 7: N x (4 + 1 + C), the middle, width and height, the score that there is an object, scores of the classes;
+// - YOLO 8 and 11: (4 + C) x N, the same without the object's score; numbers behind the classes are left out;
+// - YOLOX: as YOLO 5, with one box for each cell; boxes in cells and logarithms are decoded;
+// - end to end: N x 6, left, top, right, bottom, score, class; N x 5, the same with one class;
+// - SSD: 1 x 1 x N x 7, picture, class, score, left, top, right, bottom; or two outputs, N x 4 (left, top, right, bottom)
+//   and N x C, whose first class is the background where the scores of each box add up to 1.
+// Of several outputs those are taken that have such a shape. Coordinates are in pixels of the input, or in shares of it
+// where none is larger than a share can be. Layouts of one shape are told apart by the number of boxes (YOLO has 1 or 3
+// for each cell of its input), by what the numbers can be, and by the number of classes; where that does not suffice, and
+// where scores are beyond 0 to 1 or boxes have no size, the outputs are refused.
+class NetworkReader {
+ public:
+  // input: width and height of the network's picture in pixels.
+  NetworkReader(Size input, PersonClass person) : input_(input), person_(person) {}
 
-// Appends what the outputs say of persons with a score (0 to 1) of at least `threshold`: boxes in pixels of the input of size `input`.
-// person: number of the class, or -1: the first one (YOLO), the first after the background (SSD). The heads:
-// - YOLO, one output: 1 x boxes x (4 + 1 + classes), the middle, width and height in pixels, the score that there is an object, scores of
-//   the classes (version 5 and 7); or 1 x (4 + classes) x boxes, without the object's score (version 8 and 11);
-// - SSD: one output 1 x 1 x boxes x 7: picture, class, score, left, top, right, bottom; or two, 1 x boxes x 4 (left, top, right,
-//   bottom) and 1 x boxes x classes; in shares of the input.
-// Returns false where the outputs are none of these, or have no such class.
-bool read_persons(std::span<const NetworkOutput> outputs, Size input, int person, double threshold,
-                  std::vector<PersonDetection>& hits);
+  // Appends the persons with a score (0 to 1) of at least `threshold`: boxes in pixels of the input. Returns nullopt, or
+  // the end of a sentence: "its output 1 x 6 x 300 cannot be read: ...".
+  std::optional<std::string> read(std::span<const NetworkOutput> outputs, double threshold,
+                                  std::vector<PersonDetection>& hits);
+
+  // The network takes brightness from 0 to 255, not from 0 to 1. Known once the layout is.
+  bool takes_bytes() const { return layout_ && layout_->takes_bytes; }
+
+ private:
+  std::string read_rows(std::span<const NetworkOutput> outputs, double threshold,
+                        std::vector<PersonDetection>& hits) const;
+
+  Size input_;
+  PersonClass person_;
+  std::optional<NetworkLayout> layout_;
+};
 
 }  // namespace cerberus::vision
