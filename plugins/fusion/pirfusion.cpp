@@ -7,9 +7,9 @@
  * the buffer, which goes through otherwise untouched and in the thread it came in; at every change it is posted as an
  * element message `cerberus-fusion` too.
  *
- * Pads: `sink` and `src` take any caps; caps, allocation and latency are theirs alone. Each `pir_%u` takes PIR readings
- * (`application/x-pir`, what the sensors cover is read from the caps; several pads are counted on in the order of their
- * numbers, 16 sensors at most). A pad that has no caps yet, and a number that is left out (`pir_1` without `pir_0`),
+ * Pads: `sink` and `src` take video, raw or encoded; caps, allocation and latency are theirs alone. Each `pir_%u` takes
+ * PIR readings (`application/x-pir`, what the sensors cover is read from the caps; several pads are counted on in the
+ * order of their numbers, 16 sensors at most; `pirsrc ! fusion.` makes the next one). A pad that has no caps yet, and a number that is left out (`pir_1` without `pir_0`),
  * counts as one sensor whose readings are invalid: the others keep their numbers, and rules keep their meaning.
  * `format=level` (volts) is compared with `level-threshold` and filtered as `pirsrc` does by default; let `pirsrc` do
  * that where it is the source: it has the module's warm-up and hold.
@@ -48,7 +48,7 @@
  * |[
  * gst-launch-1.0 -m videotestsrc num-buffers=60 pattern=ball ! motiondetect ! pirfusion ! fakesink
  * gst-launch-1.0 -m videotestsrc num-buffers=60 pattern=ball ! motiondetect ! pirfusion name=fusion rules=paper ! \
- *     fakesink pirsrc driver=scripted script="0,0,0,0; 1,0,1,0" ! fusion.pir_0
+ *     fakesink pirsrc driver=scripted script="0,0,0,0; 1,0,1,0" ! fusion.
  * ]|
  *
  * Since: 0.1
@@ -88,10 +88,14 @@ GST_DEBUG_CATEGORY_STATIC(pirfusion_debug);
 namespace cerberus::plugin {
 namespace {
 
+// Not any caps: then `pirsrc ! fusion.` in front of the video would take the video's pad.
+#define VIDEO_CAPS                                                                          \
+  "video/x-raw(ANY); video/x-bayer; video/x-h264; video/x-h265; video/x-vp8; video/x-vp9; " \
+  "video/x-av1; video/mpeg; image/jpeg; image/png"
 GstStaticPadTemplate sink_template =
-    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
+    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(VIDEO_CAPS));
 GstStaticPadTemplate src_template =
-    GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
+    GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(VIDEO_CAPS));
 GstStaticPadTemplate pir_template =
     GST_STATIC_PAD_TEMPLATE("pir_%u", GST_PAD_SINK, GST_PAD_REQUEST, GST_STATIC_CAPS(CERBERUS_PIR_CAPS));
 
@@ -491,7 +495,8 @@ void cerberus_pir_fusion_class_init(CerberusPirFusionClass* klass) {
   element->request_new_pad = request_new_pad;
   element->release_pad = release_pad;
   element->change_state = change_state;
-  for (GstStaticPadTemplate* each : {&sink_template, &src_template, &pir_template})
+  // The PIR pads first: a link without a pad's name (`queue ! fusion.`) takes the first template that fits.
+  for (GstStaticPadTemplate* each : {&pir_template, &sink_template, &src_template})
     gst_element_class_add_static_pad_template(element, each);
   gst_element_class_set_static_metadata(element, "PIR fusion", "Filter/Analyzer/Video",
                                         "Decides from camera and PIR sensors where a head should look",

@@ -305,6 +305,41 @@ GST_START_TEST(sensors_that_contradict_each_other_are_answered_without_hunting) 
 }
 GST_END_TEST
 
+// The pads that a pirsrc and the video of a launch line have been linked to, as "pir_0 sink".
+std::string linked_pads(const char* line) {
+  g_autoptr(GError) error = nullptr;
+  GstElement* pipeline = gst_parse_launch(line, &error);
+  std::string names = error ? error->message : "";
+  for (const char* of : {"pir", "more", "video"}) {
+    GstElement* source = gst_bin_get_by_name(GST_BIN(pipeline), of);
+    if (!source) continue;
+    GstPad* pad = gst_element_get_static_pad(source, "src");
+    GstPad* peer = gst_pad_get_peer(pad);
+    names += std::string(names.empty() ? "" : " ") + (peer ? GST_PAD_NAME(peer) : "none");
+    if (peer) gst_object_unref(peer);
+    gst_object_unref(pad);
+    gst_object_unref(source);
+  }
+  gst_object_unref(pipeline);
+  return names;
+}
+
+GST_START_TEST(a_source_that_names_no_pad_is_linked_to_the_pad_of_its_kind) {
+  for (const char* line :
+       {"videotestsrc name=video ! pirfusion name=f ! fakesink pirsrc name=pir ! f.",
+        "pirsrc name=pir ! f. videotestsrc name=video ! pirfusion name=f ! fakesink",
+        "pirsrc name=pir ! pirfusion name=f ! fakesink videotestsrc name=video ! f.",
+        "pirsrc ! queue name=pir ! f. videotestsrc ! queue name=video ! f. pirfusion name=f ! fakesink",
+        "videotestsrc ! queue name=video ! f. pirsrc ! queue name=pir ! f. pirfusion name=f ! fakesink"})
+    assert_says(linked_pads(line), "pir_0 sink");
+  assert_says(linked_pads("pirsrc name=pir ! f. pirsrc name=more ! f. pirfusion name=f ! fakesink"),
+              "pir_0 pir_1");
+  // A queue that nothing is linked to yet, as behind a decoder that has not begun, waits for video.
+  assert_says(linked_pads("pirsrc name=pir ! f. queue name=video ! f. pirfusion name=f ! fakesink"),
+              "pir_0 sink");
+}
+GST_END_TEST
+
 GST_START_TEST(the_video_path_is_as_if_nothing_were_there) {
   Rig rig(true, "return-delay=0");
   GstHarness* pir = rig.add_pir();
@@ -420,6 +455,7 @@ static Suite* pirfusion_pads_suite() {
   tcase_add_test(tc, sensors_that_contradict_each_other_are_answered_without_hunting);
   tc = tcase_create("video");
   suite_add_tcase(s, tc);
+  tcase_add_test(tc, a_source_that_names_no_pad_is_linked_to_the_pad_of_its_kind);
   tcase_add_test(tc, the_video_path_is_as_if_nothing_were_there);
   tcase_add_test(tc, a_shared_frame_is_not_written_on);
   tcase_add_test(tc, a_flush_and_a_new_segment_clear_the_followed_track);
