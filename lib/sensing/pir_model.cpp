@@ -68,6 +68,7 @@ std::span<const PirPreset> pir_presets() {
 
 PirModel::PirModel(const PirOptions& options) : options_(options) {
   options_.debounce = std::clamp(options_.debounce, Time::zero(), kMostDebounce);
+  options_.min_pulse = not_negative(options_.min_pulse);
   options_.hold = not_negative(options_.hold);
   options_.block = not_negative(options_.block);
   options_.warm_up = not_negative(options_.warm_up);
@@ -79,8 +80,8 @@ PirModel::PirModel(const PirOptions& options) : options_(options) {
 void PirModel::start(Time now, bool level) {
   now_ = changed_ = now;
   started_ = true;
-  line_ = detecting_ = false;
-  last_fall_ = hold_until_ = blocked_until_ = kLongAgo;
+  line_ = pulse_ = detecting_ = false;
+  last_fall_ = pulse_end_ = hold_until_ = blocked_until_ = kLongAgo;
   warm_until_ = std::exchange(warms_until_, std::nullopt).value_or(later(now, options_.warm_up));
   warming_ = warm_until_ > now;
   presence_ = Presence::invalid;
@@ -88,7 +89,10 @@ void PirModel::start(Time now, bool level) {
   turning_ = doubtful_ = false;
   rise_count_ = 0;
   line_ = level != options_.active_low;
-  if (line_) rise(now);
+  if (line_) {
+    rise(now);
+    begin_pulse(now);
+  }
   settle(now);
 }
 
@@ -108,6 +112,7 @@ void PirModel::edge(Time time, bool level) {
     rise(now_);
   } else {
     last_fall_ = now_;
+    if (std::exchange(pulse_, false)) pulse_end_ = now_;
   }
   settle(now_);
 }
@@ -140,6 +145,12 @@ void PirModel::rise(Time now) {
   if (rise_count_ == 0 || later(last_fall_, options_.debounce) <= now) active_since_ = now;
   rises_[rise_count_++ % kRises] = now;
   if (rise_count_ == 2 * kRises) rise_count_ = kRises;  // only "at least kRises" matters; never wraps to 0
+  rose_ = now;
+  if (detecting_ && later(pulse_end_, options_.debounce) > now) begin_pulse(now);  // it goes on
+}
+
+void PirModel::begin_pulse(Time now) {
+  pulse_ = true;
   if (detecting_ && options_.retrigger) hold_until_ = std::max(hold_until_, later(now, options_.hold));
 }
 
@@ -156,7 +167,7 @@ Time PirModel::calm_time() const {
 // Returns the time at which the detection ends if no edge comes; kNever: not before the line falls.
 Time PirModel::end_time() const {
   if (!options_.retrigger && options_.hold > Time::zero()) return hold_until_;
-  return line_ ? kNever : std::max(later(last_fall_, options_.debounce), hold_until_);
+  return pulse_ ? kNever : std::max(later(pulse_end_, options_.debounce), hold_until_);
 }
 
 Time PirModel::deadline() const {
@@ -166,8 +177,9 @@ Time PirModel::deadline() const {
     if (expected) due = std::min(due, time);
   };
   at(warming_, warm_until_);
+  at(line_ && !pulse_, later(rose_, options_.min_pulse));
   at(detecting_, end_time());
-  at(!detecting_ && line_, blocked_until_);
+  at(!detecting_ && pulse_, blocked_until_);
   at(fault_ == PirFault::none && line_ && options_.stuck_after > Time::zero(),
      later(active_since_, options_.stuck_after));
   at(fault_ == PirFault::stuck_on && !line_, later(last_fall_, options_.debounce));
@@ -181,11 +193,12 @@ Time PirModel::deadline() const {
 void PirModel::settle(Time now) {
   if (warming_ && now >= warm_until_) warming_ = false;
 
+  if (line_ && !pulse_ && now >= later(rose_, options_.min_pulse)) begin_pulse(now);
   if (detecting_ && now >= end_time()) {
     detecting_ = false;
     blocked_until_ = options_.block > Time::zero() ? later(now, options_.block) : kLongAgo;
   }
-  if (!detecting_ && line_ && now >= blocked_until_) {
+  if (!detecting_ && pulse_ && now >= blocked_until_) {
     detecting_ = true;
     hold_until_ = later(now, options_.hold);
   }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // One PIR sensor as pure logic: converts the edges of its line, with their times, to presence.
 //
-//   line  ──┐_┌──────┐________      the module's output, after polarity
-//   a rise is reported at once (a detection must reach the motors within 60 ms), a fall only after `debounce` without
-//   edges: bounce is never reported and does not delay the rise
-//   presence = max(fall + debounce, last rise + hold), then `block` during which nothing triggers
+//   line  ─┐_┌──────┐________      the module's output, after polarity
+//   pulse: the line is active for `min_pulse` without a break; shorter ones are interference and ignored. A break
+//   shorter than `debounce` ends no pulse.
+//   a pulse is reported `min_pulse` after its rise (a detection must reach the motors within 60 ms), its end only after
+//   `debounce` without edges: bounce is never reported and delays no pulse by more than its own length
+//   presence = max(end of the pulse + debounce, begin of the last pulse + hold), then `block` during which nothing
+//   triggers
 //
 // The model has no clock: the caller calls edge() for each edge and poll() at deadline(), and sleeps until deadline()
 // or the next edge, whichever is first. All times are of one clock; a time earlier than the last one counts as the last
@@ -32,12 +35,16 @@ std::string_view describe(PirFault fault);
 
 struct PirOptions {
   bool active_low = false;  // the line is low during a detection (open collector)
-  bool retrigger = true;    // a rise during hold extends it
+  bool retrigger = true;    // a pulse during hold extends it
+  // Shorter pulses are none; 0: every pulse counts. derived: three times the dips of 3 ms that a motor's start puts on
+  // all lines, a thirtieth of the shortest output of a module (kPresets: 300 ms), a sixth of the 60 ms that a detection
+  // has to the motors. Guarded by unit-pir_model.
+  Time min_pulse = std::chrono::milliseconds(10);
   Time debounce =
       std::chrono::milliseconds(20);  // time without edges before a fall counts; 0 .. 50 ms (clamped)
-  Time hold{};                        // least duration of a detection from its (last) rise; 0: the line's own
-  Time block{};                       // after a detection nothing triggers for this long; 0: none
-  Time warm_up{};                     // from start(): readings are invalid; 0: none
+  Time hold{};     // least duration of a detection from its (last) pulse; 0: the line's own
+  Time block{};    // after a detection nothing triggers for this long; 0: none
+  Time warm_up{};  // from start(): readings are invalid; 0: none
   Time stuck_after = std::chrono::minutes(10);  // line active without a break: stuck on; 0: never
   unsigned chatter_edges = 64;  // rises of the raw line within chatter_window that mean chattering; 0: never
   Time chatter_window = std::chrono::seconds(10);
@@ -62,7 +69,8 @@ class PirModel {
  public:
   explicit PirModel(const PirOptions& options = {});
 
-  // Begins (again) at `now` with the line's present level: warm-up starts, history and faults are cleared.
+  // Begins (again) at `now` with the line's present level, which counts as a pulse if it is active: warm-up starts,
+  // history and faults are cleared.
   void start(Time now, bool level);
   // Forgets the line's level, history and faults, until the next edge() begins anew. The module kept its supply: a
   // warm-up that start() began goes on, and one that never began begins with that edge.
@@ -94,6 +102,7 @@ class PirModel {
   void advance(Time until);
   void settle(Time now);
   void rise(Time now);
+  void begin_pulse(Time now);
   Time past_rise(unsigned n) const;
   Time calm_time() const;
   Time end_time() const;
@@ -104,9 +113,12 @@ class PirModel {
   Time now_{}, changed_{};
   std::optional<Time> warms_until_;  // of a line whose level was forgotten
   bool started_ = false, warming_ = false;
-  bool line_ = false;       // active, after polarity
-  bool detecting_ = false;  // presence if nothing makes it invalid
-  Time active_since_{}, last_fall_{}, hold_until_{}, blocked_until_{}, warm_until_{};
+  bool line_ = false;                  // active, after polarity
+  bool pulse_ = false;                 // and for long enough
+  bool detecting_ = false;             // presence if nothing makes it invalid
+  Time active_since_{}, last_fall_{};  // of the line
+  Time rose_{}, pulse_end_{};          // the line's last rise; the end of the last pulse
+  Time hold_until_{}, blocked_until_{}, warm_until_{};
   Presence presence_ = Presence::invalid;
   PirFault fault_ = PirFault::none;
   bool turning_ = false, doubtful_ = false;

@@ -66,10 +66,11 @@ const Property<PirSettings> kProperties[] = {
         "The sensor module: sets active-low, warm-up and field-of-view. A property that was set itself wins"),
     property("active-low", &S::active_low, "A line is low while its sensor detects (open collector)"),
     property("retrigger", &S::retrigger, "A new pulse during hold extends it"),
+    property("min-pulse", &S::min_pulse,
+             "Nanoseconds that a line must be active before a detection begins: shorter pulses are "
+             "interference and ignored; 0 = every pulse counts, at once"),
     property("debounce", &S::debounce,
-             "Nanoseconds that a line must be quiet before a detection ends, up to 50 ms; 0 = at once. A "
-             "detection "
-             "begins at once in any case"),
+             "Nanoseconds that a line must be quiet before a detection ends, up to 50 ms; 0 = at once"),
     property("hold", &S::hold,
              "Least duration of a detection in nanoseconds; 0 = as long as the line is active"),
     property("block-time", &S::block_time,
@@ -191,6 +192,7 @@ sensing::PirOptions pir_options(const PirSettings& settings) {
   sensing::PirOptions options;
   options.active_low = settings.active_low;
   options.retrigger = settings.retrigger;
+  options.min_pulse = time_of(settings.min_pulse);
   options.debounce = time_of(settings.debounce);
   options.hold = time_of(settings.hold);
   options.block = time_of(settings.block_time);

@@ -24,6 +24,7 @@ struct PirSettings {
   int preset = 0;  // 0: none, else 1 + its place in sensing::pir_presets()
   bool active_low = sensing::PirOptions{}.active_low;
   bool retrigger = sensing::PirOptions{}.retrigger;
+  guint64 min_pulse = clock_time(sensing::PirOptions{}.min_pulse);
   guint64 debounce = clock_time(sensing::PirOptions{}.debounce);
   guint64 hold = clock_time(sensing::PirOptions{}.hold);
   guint64 block_time = clock_time(sensing::PirOptions{}.block);

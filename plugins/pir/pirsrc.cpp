@@ -4,7 +4,7 @@
  *
  * Readings of passive infrared sensors as a stream: one byte a sensor, 0 = nothing, 1 = detection, 2 = invalid (warm-up,
  * stuck, chattering, or not open yet). A buffer comes at once at the start and at every change, and every
- * `heartbeat` when nothing changes. The caps contain the sensors' bearings, which `pirfusion` reads.
+ * `heartbeat` when nothing changes; a detection begins `min-pulse` after its line's edge. The caps contain the sensors' bearings, which `pirfusion` reads.
  *
  * Where volts are measured, downstream may take those instead, with the caps `application/x-pir,format=level`: a 32-bit
  * float a sensor in this machine's byte order, at every sample,
@@ -27,8 +27,9 @@
  * A recording that is not live can be sought in: readings continue with those of that time. A seek backwards in
  * time (a negative rate) is refused. A last line without its line feed counts if it is complete in itself.
  *
- * Lines of all drivers go through the same model: `active-low`, `debounce`, `hold`, `block-time`, `warm-up`; `preset`
- * sets them for a module. At every change the element posts an element message `cerberus-pir` (see cerberus_message_parse_pir();
+ * Lines of all drivers go through the same model: `active-low`, `min-pulse`, `debounce`, `hold`, `block-time`,
+ * `warm-up`; `preset` sets them for a module. A program that sends a detection as a pulse without length needs
+ * `min-pulse=0`. At every change the element posts an element message `cerberus-pir` (see cerberus_message_parse_pir();
  * its field `doubtful` has a bit for each sensor that detects while the robot itself turns, according to the
  * upstream event `cerberus-base`). A sensor that is stuck or chatters is named in a warning message. When a driver fails, a last
  * reading is invalid for all sensors; then comes the error.

@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 namespace {
 
 // Nothing but the line: no warm-up, no faults.
-constexpr PirOptions kPlain{.debounce = 20ms, .stuck_after = 0s, .chatter_edges = 0};
+constexpr PirOptions kPlain{.min_pulse = 0s, .debounce = 20ms, .stuck_after = 0s, .chatter_edges = 0};
 
 PirModel started(const PirOptions& options, Time now = 0ms) {
   PirModel model(options);
@@ -104,6 +104,88 @@ END_TEST
 START_TEST(the_debounce_time_is_limited_to_50_ms) {
   ck_assert(PirModel(PirOptions{.debounce = 10s}).options().debounce == 50ms);
   ck_assert(PirModel(PirOptions{.debounce = -10s}).options().debounce == 0ms);
+}
+END_TEST
+
+START_TEST(dips_of_3_ms_on_all_lines_are_no_detection_of_any_module) {
+  // What the supply of a motor that starts does to lines: a dip of a line at rest that is high, a spike of one that is
+  // low, alone and many in a row.
+  std::vector<PirOptions> modules{PirOptions{}};
+  for (const PirPreset& preset : pir_presets()) modules.push_back(preset.options);
+  for (const PirOptions& options : modules) {
+    for (const Time length : {1us, 3000us, 9999us}) {
+      PirModel model(options);
+      model.start(0s, options.active_low);
+      Time at = 100s;
+      for (int i = 0; i < 30; ++i, at += 25ms) {
+        model.edge(at, !options.active_low);
+        ck_assert_int_eq(presence(model), 0);
+        model.edge(at + length, options.active_low);
+        model.poll(at + 20ms);
+        ck_assert_int_eq(presence(model), 0);
+      }
+      ck_assert(model.changed() < 100s && model.fault() == PirFault::none);
+      model.edge(200s, !options.active_low);  // a pulse of a module
+      model.poll(200s + 10ms);
+      ck_assert_int_eq(presence(model), 1);
+      ck_assert(model.changed() == 200s + 10ms);
+    }
+  }
+}
+END_TEST
+
+START_TEST(a_pulse_counts_from_its_least_length_on) {
+  PirOptions options = kPlain;
+  options.min_pulse = 10ms;
+  PirModel model = started(options);
+  model.edge(1s, true);
+  ck_assert(model.deadline() == 1010ms);
+  model.edge(1010ms - 1ns, false);
+  ck_assert(model.deadline() == kNever);
+  ck_assert_int_eq(presence(model), 0);
+  model.edge(2s, true);
+  model.edge(2010ms, false);  // just long enough, and seen late
+  ck_assert_int_eq(presence(model), 1);
+  ck_assert(model.changed() == 2010ms);
+  model.poll(2030ms);
+  ck_assert_int_eq(presence(model), 0);
+  // Bounce at the begin delays the pulse by its own length; breaks below the debounce time do not end it.
+  for (Time at = 3s; at < 3004ms; at += 2ms) {
+    model.edge(at, true);
+    model.edge(at + 1ms, false);
+  }
+  model.edge(3004ms, true);
+  model.poll(3100ms);
+  ck_assert(presence(model) == 1 && model.changed() == 3014ms);
+  for (Time at = 4s; at < 4100ms; at += 19ms) {
+    model.edge(at, false);
+    model.edge(at + 18ms, true);
+    ck_assert_int_eq(presence(model), 1);
+  }
+  ck_assert(model.changed() == 3014ms);
+  // A line that is active at the start has been for long.
+  model.start(10s, true);
+  ck_assert_int_eq(presence(model), 1);
+}
+END_TEST
+
+START_TEST(a_pulse_that_is_too_short_extends_no_detection) {
+  PirOptions options = kPlain;
+  options.min_pulse = 10ms;
+  options.hold = 2s;
+  PirModel model = started(options);
+  model.edge(1s, true);
+  model.edge(1100ms, false);
+  ck_assert(model.deadline() == 3010ms);
+  model.edge(2s, true);
+  model.edge(2003ms, false);
+  ck_assert(model.deadline() == 3010ms);
+  model.edge(3009ms, true);  // it is short until it is not
+  ck_assert(model.deadline() == 3010ms);
+  model.poll(3012ms);
+  ck_assert_int_eq(presence(model), 0);
+  model.poll(3019ms);
+  ck_assert_int_eq(presence(model), 1);
 }
 END_TEST
 
@@ -434,16 +516,25 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "pir_model",
-      {a_rise_is_reported_at_once_and_a_fall_after_the_debounce_time, bounce_does_not_show,
-       a_late_poll_still_reports_the_exact_time, the_debounce_time_is_limited_to_50_ms,
-       an_open_collector_module_detects_while_its_line_is_low,
-       readings_are_invalid_before_the_start_and_in_warm_up,
-       hold_keeps_a_detection_and_a_new_rise_extends_it_where_the_module_retriggers,
-       without_retrigger_a_line_that_stays_is_a_new_detection_after_the_block_time,
-       nothing_triggers_in_the_block_time, a_line_that_never_rests_is_stuck_until_it_does,
-       a_line_that_chatters_is_invalid_until_it_calms_down, no_module_of_the_list_chatters_by_its_own_timing,
-       a_turning_base_makes_detections_doubtful, a_base_without_further_reports_is_taken_as_standing,
-       a_time_that_goes_back_counts_as_the_last_one, presence_follows_its_definition_on_random_lines,
-       sleeping_until_the_deadline_misses_nothing, the_modules_are_there_by_name});
+      "pir_model", {a_rise_is_reported_at_once_and_a_fall_after_the_debounce_time,
+                    bounce_does_not_show,
+                    a_late_poll_still_reports_the_exact_time,
+                    the_debounce_time_is_limited_to_50_ms,
+                    dips_of_3_ms_on_all_lines_are_no_detection_of_any_module,
+                    a_pulse_counts_from_its_least_length_on,
+                    a_pulse_that_is_too_short_extends_no_detection,
+                    an_open_collector_module_detects_while_its_line_is_low,
+                    readings_are_invalid_before_the_start_and_in_warm_up,
+                    hold_keeps_a_detection_and_a_new_rise_extends_it_where_the_module_retriggers,
+                    without_retrigger_a_line_that_stays_is_a_new_detection_after_the_block_time,
+                    nothing_triggers_in_the_block_time,
+                    a_line_that_never_rests_is_stuck_until_it_does,
+                    a_line_that_chatters_is_invalid_until_it_calms_down,
+                    no_module_of_the_list_chatters_by_its_own_timing,
+                    a_turning_base_makes_detections_doubtful,
+                    a_base_without_further_reports_is_taken_as_standing,
+                    a_time_that_goes_back_counts_as_the_last_one,
+                    presence_follows_its_definition_on_random_lines,
+                    sleeping_until_the_deadline_misses_nothing,
+                    the_modules_are_there_by_name});
 }
