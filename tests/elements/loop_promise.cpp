@@ -3,8 +3,8 @@
 // whatever its frame rate and the camera's delay are. Here by the clock of the test; loop_real_time.cpp measures the
 // processing time.
 //
-// A rising edge is reported at once (debounce delays falls only), decided at once with the last frame, and executed at
-// once. A reading from before the first frame waits for that frame.
+// A rising edge is reported when it has lasted for min-pulse (debounce delays falls only), decided at once with the last
+// frame, and executed at once. A reading from before the first frame waits for that frame.
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -17,11 +17,13 @@
 
 namespace {
 
-GST_START_TEST(a_rise_is_published_with_its_own_time) {
-  for (const char* debounce : {"", "debounce=0", "debounce=50000000"})
+GST_START_TEST(a_rise_is_published_when_it_has_lasted_for_min_pulse) {
+  for (const auto& [pulse, properties] : {std::pair{10 * GST_MSECOND, ""},
+                                          {GstClockTime{0}, "min-pulse=0 debounce=0"},
+                                          {GST_MSECOND, "min-pulse=1000000 debounce=50000000"}})
     for (int ms = 1000; ms < 1034; ++ms) {
       const std::string script = "script=\"0,0,0,0; " + std::to_string(ms / 1000.0) + ",0,0,1\"";
-      GstHarness* h = gst_harness_new_parse(("pirsrc driver=scripted " + script + " " + debounce).c_str());
+      GstHarness* h = gst_harness_new_parse(("pirsrc driver=scripted " + script + " " + properties).c_str());
       gst_harness_play(h);
       for (bool risen = false; !risen;) {
         g_autoptr(GstBuffer) reading = gst_harness_pull(h);
@@ -30,7 +32,7 @@ GST_START_TEST(a_rise_is_published_with_its_own_time) {
         fail_unless_equals_uint64(gst_buffer_extract(reading, 0, values, 3), 3);
         risen = values[2] == 1;
         const GstClockTime edge = static_cast<GstClockTime>(ms) * GST_MSECOND;
-        if (risen) fail_unless_equals_uint64(GST_BUFFER_PTS(reading), edge);
+        if (risen) fail_unless_equals_uint64(GST_BUFFER_PTS(reading), edge + pulse);
       }
       gst_harness_teardown(h);
     }
@@ -160,7 +162,7 @@ Suite* loop_promise_suite() {
   suite_add_tcase(suite, tests);
   tcase_set_timeout(tests, 90);
   tcase_add_checked_fixture(tests, watch_library_log, nullptr);
-  tcase_add_test(tests, a_rise_is_published_with_its_own_time);
+  tcase_add_test(tests, a_rise_is_published_when_it_has_lasted_for_min_pulse);
   tcase_add_test(tests, no_edge_waits_for_a_frame);
   tcase_add_test(tests, what_was_said_before_the_first_frame_comes_with_it);
   return suite;

@@ -157,7 +157,8 @@ GST_START_TEST(volts_are_compared_with_the_threshold_of_pirfusion) {
     Rig rig;
     rig.add_pir(kLevels);
     assert_says(after(rig, 0, {1.79F, 1.81F}), "01");  // 1.65 V and half of 0.3 V
-    assert_says(after(rig, 100 * kMs, {1.81F, 1.51F}), "11");
+    assert_says(after(rig, 100 * kMs, {1.81F, 1.51F}), "01");
+    assert_says(after(rig, 110 * kMs, {1.81F, 1.51F}), "11");  // a pulse must last for 10 ms
     assert_says(after(rig, 200 * kMs, {1.81F, 1.49F}), "11");  // a fall must be quiet for 20 ms
     assert_says(text(sensors(rig.at(210 * kMs))), "11");
     assert_says(after(rig, 300 * kMs, {1.81F, 1.49F}), "10");

@@ -31,7 +31,8 @@ std::string digits(gconstpointer bytes, gsize size) {
 
 class Source : public PirSource {
  public:
-  explicit Source(const std::string& properties) : PirSource("pirsrc " + properties) {}
+  // Of properties that do not say so every pulse counts, with the time of its edge.
+  explicit Source(const std::string& properties) : PirSource("pirsrc min-pulse=0 " + properties) {}
 
   Buffer pull() {
     g_autoptr(GstBuffer) buffer = take();
@@ -197,6 +198,9 @@ GST_START_TEST(the_model_follows_the_properties) {
     std::vector<std::string> expected;
   } cases[] = {
       {"active-low=true script=\"0,1;1,0;2,1\"", {"0 0", "1000 1", "2020 0"}},
+      {"script=\"0,0;1,1;1.003,0;2,0\"", {"0 0", "1000 1", "1023 0"}},
+      {"min-pulse=50000000 script=\"0,0;1,1;1.04,0;2,1;3,1\"", {"0 0", "2050 1"}},
+      {"min-pulse=10000000 script=\"0,0;1,1;1.003,0;2,1;2.01,0;3,0\"", {"0 0", "2010 1", "2030 0"}},
       {"debounce=0 script=\"0,0;1,1;2,0\"", {"0 0", "1000 1", "2000 0"}},
       {"hold=3000000000 script=\"0,0;1,1;2,0;9,0\"", {"0 0", "1000 1", "4000 0"}},
       {"hold=3000000000 script=\"0,0;1,1;1.5,0;2,1;3,0;9,0\"", {"0 0", "1000 1", "5000 0"}},

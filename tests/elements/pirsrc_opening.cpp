@@ -24,8 +24,8 @@ constexpr char kTimes[] = "heartbeat=3600000000000 ";
 class Hanging {
  public:
   explicit Hanging(const std::string& script, const std::string& properties = "", const char* caps = nullptr)
-      : source("pirsrc name=source " + properties + " script=\"open wait " + gate.reader() + "; " + script +
-                   "\"",
+      : source("pirsrc min-pulse=0 name=source " + properties + " script=\"open wait " + gate.reader() +
+                   "; " + script + "\"",
                caps) {}
 
   milliseconds change(GstState state) {

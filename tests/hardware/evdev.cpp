@@ -56,7 +56,9 @@ class Receiver {
 };
 
 std::string evdev(const std::string& device = "\"PIR receiver\"") {
-  return "driver=evdev heartbeat=5000000000 debounce=0 codes=BTN_0,BTN_1,SW_MACHINE_COVER device=" + device;
+  return "driver=evdev heartbeat=5000000000 min-pulse=0 debounce=0 codes=BTN_0,BTN_1,SW_MACHINE_COVER "
+         "device=" +
+         device;
 }
 
 GST_START_TEST(levels_at_opening_and_events_with_the_kernels_time) {

@@ -84,7 +84,7 @@ GST_START_TEST(a_voltage_that_rises_and_falls_is_a_detection_with_hysteresis) {
   Converter converter;
   Voltage voltage;
   // on at 0.003 V: raw 2244; off below 0.001 V: raw 743
-  Source source(iio("debounce=0 threshold=0.002 hysteresis=0.002"));
+  Source source(iio("min-pulse=0 debounce=0 threshold=0.002 hysteresis=0.002"));
   source.play();
   source.expect({0});
   const GstClockTime least = least_of(60 * GST_MSECOND, [&] {

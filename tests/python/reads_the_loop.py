@@ -232,7 +232,7 @@ class WithARecording(unittest.TestCase):
             buffers = frames('videotestsrc num-buffers=40 pattern=black ! '
                              'video/x-raw,format=GRAY8,width=64,height=64,framerate=20/1 ! pirfusion name=fusion ! '
                              'motionjson ! appsink name=sink sync=false '
-                             f'pirsrc debounce=0 {sensors} ! queue ! fusion.pir_0')
+                             f'pirsrc min-pulse=0 debounce=0 {sensors} ! queue ! fusion.pir_0')
             return b"".join(buffer.extract_dup(0, buffer.get_size()) for buffer in buffers)
 
         with tempfile.TemporaryDirectory() as folder:

@@ -27,6 +27,9 @@ using cerberus::sensing::Presence;
 using cerberus::tests::assert_text;
 using cerberus::tests::Pipe;
 
+// Every pulse counts, with the time of its edge.
+constexpr PirOptions kAtOnce{.min_pulse = 0s};
+
 struct Reported {
   Time time;
   std::string readings;
@@ -84,7 +87,7 @@ void must_be(const std::vector<Reported>& reported, const std::vector<Reported>&
 START_TEST(a_reading_at_the_start_at_every_change_and_every_heartbeat) {
   SensorArray array;
   must_be(
-      play(array, "0,0,0,0; 0.25,1,0,0; 0.4,1,1,1; 0.45,0,1,1", {}, 100ms),
+      play(array, "0,0,0,0; 0.25,1,0,0; 0.4,1,1,1; 0.45,0,1,1", kAtOnce, 100ms),
       {{0ms, "000", true},
        {100ms, "000", false},
        {200ms, "000", false},
@@ -97,14 +100,15 @@ END_TEST
 
 START_TEST(nothing_is_known_before_a_recordings_first_line) {
   SensorArray array;
-  must_be(play(array, "1,0,1,0", {}), {{0ms, "222", true}, {1s, "010", true}});
+  must_be(play(array, "1,0,1,0", kAtOnce), {{0ms, "222", true}, {1s, "010", true}});
   must_be(play(array, "", {}), {{0ms, "222", true}});
 }
 END_TEST
 
 START_TEST(an_invalid_reading_of_a_recording_lasts_until_the_next_one) {
   SensorArray array;
-  must_be(play(array, "0,0,1,2; 1,2,2,2; 2,2,1,1; 3,1,0,2; 4,0,0,0", {.hold = 10s, .warm_up = 500ms}, 100s),
+  must_be(play(array, "0,0,1,2; 1,2,2,2; 2,2,1,1; 3,1,0,2; 4,0,0,0",
+               {.min_pulse = 0s, .hold = 10s, .warm_up = 500ms}, 100s),
           {{0s, "222", true},
            {500ms, "012", true},
            {1s, "222", true},
@@ -112,7 +116,7 @@ START_TEST(an_invalid_reading_of_a_recording_lasts_until_the_next_one) {
            {3s, "112", true},
            {4s, "110", true}});  // the hold of those that go on
   // Low during a detection, and no earlier edge is waited for.
-  must_be(play(array, "0,0; 1,2; 2,1; 3,2; 4,0", {.active_low = true}, 100s, 1),
+  must_be(play(array, "0,0; 1,2; 2,1; 3,2; 4,0", {.active_low = true, .min_pulse = 0s}, 100s, 1),
           {{0s, "1", true}, {1s, "2", true}, {2s, "0", true}, {3s, "2", true}, {4s, "1", true}});
 }
 END_TEST
@@ -120,7 +124,7 @@ END_TEST
 START_TEST(a_recording_goes_on_wherever_it_is_asked_to) {
   SensorArray array;
   const std::string script = "0,0,0; 1,1,0; 1.5,1,2; 2.5,0,1; 4,0,0";
-  const std::vector<Reported> whole = play(array, script, {.hold = 2s}, 100s, 2);
+  const std::vector<Reported> whole = play(array, script, {.min_pulse = 0s, .hold = 2s}, 100s, 2);
   must_be(whole,
           {{0s, "00", true}, {1s, "10", true}, {1500ms, "12", true}, {2500ms, "11", true}, {3s, "01", true}});
   array.seek(2s);
@@ -141,7 +145,7 @@ START_TEST(a_driver_that_blocks_blocks_no_caller_and_its_readings_are_received_l
     SensorArray array;
     SensorSetup setup;
     setup.script = "0,0,1,0; 1,1,0,0; wait " + gate.reader() + " " + bell.writer();
-    ck_assert(!array.open(make_sensor("scripted"), setup, {.debounce = 0s}, 1h));
+    ck_assert(!array.open(make_sensor("scripted"), setup, {.min_pulse = 0s, .debounce = 0s}, 1h));
     ck_assert(array.fd() >= 0 && !array.recorded());
     ck_assert(array.place(2) == "reading 3 of script");
     bell.read();  // it blocks
@@ -198,7 +202,7 @@ END_TEST
 
 START_TEST(a_stuck_sensor_is_reported_once_and_once_more_when_it_works_again) {
   SensorArray array;
-  must_be(play(array, "0,0; 1,1; 700,0; 800,0", {}, 1000s, 1),
+  must_be(play(array, "0,0; 1,1; 700,0; 800,0", kAtOnce, 1000s, 1),
           {{0ms, "0", true}, {1s, "1", true}, {601s, "2!", true}, {700s + 20ms, "0!", true}});
   ck_assert(array.fault(0) == PirFault::none);
 }
@@ -273,7 +277,7 @@ START_TEST(edges_before_the_first_reading_are_not_reported_and_missed_heartbeats
   SensorArray array;
   SensorSetup setup;
   setup.script = "0,0,0,0; 1,1,0,0; 2,0,1,0; 60,0,0,0";
-  ck_assert(!array.open(make_sensor("scripted"), setup, {}, 100ms));
+  ck_assert(!array.open(make_sensor("scripted"), setup, kAtOnce, 100ms));
   SensorReading reading;
   ck_assert(array.next(1500ms, reading) == SensorArray::Step::reading);
   ck_assert(reading.time == 1500ms && reading.presence[0] == Presence::detected);
@@ -290,7 +294,7 @@ START_TEST(a_turning_base_makes_detections_doubtful) {
   SensorArray array;
   SensorSetup setup;
   setup.script = "0,0,0,0; 1,0,0,1; 60,0,0,1";
-  ck_assert(!array.open(make_sensor("scripted"), setup, {}, 100s));
+  ck_assert(!array.open(make_sensor("scripted"), setup, kAtOnce, 100s));
   SensorReading reading;
   ck_assert(array.next(0s, reading) == SensorArray::Step::reading && reading.doubtful == 0);
   array.base(500ms, cerberus::sensing::radians(20));
@@ -307,7 +311,7 @@ START_TEST(every_sample_is_a_reading_where_that_is_asked_for) {
   SensorSetup setup;
   setup.script = "0.5,0V,0V,0V; 1,0.1V,3V,0V; 1.25,0.1V,3V,0V; 2,0V,0V,0V";
   for (const bool all : {false, true}) {
-    ck_assert(!array.open(make_sensor("scripted"), setup, {}, 1500ms));
+    ck_assert(!array.open(make_sensor("scripted"), setup, kAtOnce, 1500ms));
     ck_assert(array.measures());
     if (all) array.report_samples(true);
     std::vector<Time> times;
@@ -326,7 +330,7 @@ START_TEST(every_sample_is_a_reading_where_that_is_asked_for) {
     ck_assert(std::isnan(second[0]) && second[1] == 0 && second[2] == 3 && second.back() == 0);
   }
   setup.script = "0,0,0,0";
-  ck_assert(!array.open(make_sensor("scripted"), setup, {}, 1s) && !array.measures());
+  ck_assert(!array.open(make_sensor("scripted"), setup, kAtOnce, 1s) && !array.measures());
 }
 END_TEST
 
