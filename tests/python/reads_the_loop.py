@@ -140,7 +140,7 @@ LOOP = f"""
     virtualptz wide-fov={WIDE} width=320 height=240 ! motiondetect !
     pirfusion name=fusion horizontal-fov={WINDOW} pan-min=-{REACH} pan-max={REACH}
         return-delay={round(RETURN_DELAY * SECOND)} ! tee name=t
-    pirsrc driver=scripted bearings=0,-20,20 field-of-view=20 script="{SCRIPT}" ! queue ! fusion.pir_0
+    pirsrc driver=scripted min-pulse=0 bearings=0,-20,20 field-of-view=20 script="{SCRIPT}" ! queue ! fusion.pir_0
     t. ! queue ! pantiltsink driver=simulated horizontal-fov={WINDOW} pan-min=-{REACH} pan-max={REACH}
     t. ! queue ! motionjson ! filesink location=%s
     t. ! queue ! appsink name=sink sync=false
