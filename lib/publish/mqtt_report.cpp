@@ -92,6 +92,14 @@ bool is_topic_level(std::string_view name) {
          std::ranges::none_of(name, [](char c) { return c >= 0 && c < ' '; });
 }
 
+bool is_topic(std::string_view name) {
+  for (std::size_t end = name.find('/'); end != name.npos; end = name.find('/')) {
+    if (!is_topic_level(name.substr(0, end))) return false;
+    name.remove_prefix(end + 1);
+  }
+  return is_topic_level(name);
+}
+
 std::string MqttReport::topic(std::string_view name) const {
   std::string whole = prefix_;
   return whole.append("/").append(camera_).append("/").append(name);

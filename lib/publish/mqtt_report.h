@@ -48,6 +48,8 @@ struct MqttFrame {
 
 // Whether a name can be one level of a topic.
 bool is_topic_level(std::string_view name);
+// Levels with / between them.
+bool is_topic(std::string_view name);
 // Whether a name is in a list whose entries are parted by blanks or commas.
 bool is_listed(std::string_view name, std::string_view list);
 

@@ -138,6 +138,7 @@ class CameraReader {
     if (const TomlValue* table = reader_.table("recorder")) read_recorder(*table);
     if (camera_.source.kind == SourceKind::world && !camera_.head)
       reader_.complain("kind", "kind = \"world\" is a simulated head's world: it needs a [camera.head]");
+    reader_.lines("", camera_.lines);
     reader_.finish();
     return std::move(camera_);
   }
@@ -268,6 +269,7 @@ class CameraReader {
 
   void read_recorder(const TomlValue& table) {
     TableReader reader(table, "[camera.recorder]", mistakes_);
+    reader.lines("recorder.", camera_.lines);
     RecorderSettings& recorder = camera_.recorder.emplace();
     if (!reader.has("folder")) reader.complain("folder", "a [camera.recorder] needs a \"folder\"");
     if (reader.text("folder", recorder.folder)) recorder.folder = below(folder_, recorder.folder);
@@ -277,8 +279,9 @@ class CameraReader {
         reader.complain(key, "the stream of kind = \"rtsp\" is recorded as it comes, without an encoder");
     double days = 7;
     if (reader.number("retention-days", days, 0, 36500))
-      recorder.properties.push_back(
-          {"retention-age", std::to_string(static_cast<std::int64_t>(days * kDay * 1e9))});
+      recorder.properties.push_back({"retention-age",
+                                     std::to_string(static_cast<std::int64_t>(days * kDay * 1e9)),
+                                     reader.line("retention-days")});
     reader.properties(kRecorder, recorder.properties);
     reader.finish();
   }

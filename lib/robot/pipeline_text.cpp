@@ -85,7 +85,8 @@ class Writer {
     text_.assignments.push_back({std::move(element), std::move(property), std::move(value)});
   }
   void set_all(const char* element, const Properties& properties) {
-    for (const Property& property : properties) set(element, property.name, property.value);
+    for (const Property& property : properties)
+      text_.assignments.push_back({element, property.name, property.value, property.line});
   }
 
   std::string size_and_rate() const {

@@ -3,6 +3,7 @@
 // character of theirs is parsed.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,7 @@ namespace cerberus::robot {
 
 struct Assignment {
   std::string element, property, value;
+  std::uint32_t line = 0;  // of the file; 0: the file does not say so itself
 };
 
 struct PipelineText {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,10 +16,14 @@ namespace cerberus::robot {
 // A property of a GStreamer element, its value in the form of gst-launch-1.0.
 struct Property {
   std::string name, value;
+  std::uint32_t line = 0;  // where the file sets it; 0: it does not
 
-  bool operator==(const Property&) const = default;
+  bool operator==(const Property& other) const { return name == other.name && value == other.value; }
 };
 using Properties = std::vector<Property>;
+
+// Where the file has a key, or the table that sets an element's properties: "uri", "head".
+using Lines = std::map<std::string, std::uint32_t, std::less<>>;
 
 enum class SourceKind : std::uint8_t {
   test,       // a drawn picture with a ball that moves
@@ -80,6 +85,7 @@ struct CameraSettings {
   std::optional<Properties> sensors;  // of pirsrc
   std::optional<Properties> head;     // of pantiltsink
   std::optional<RecorderSettings> recorder;
+  Lines lines;
 };
 
 struct PageSettings {
@@ -142,6 +148,8 @@ struct Settings {
   std::vector<CameraSettings> cameras;
   // Of the files that "page", "rtsp", "mqtt", "webhook" or "camera NAME" names: another text once one was written anew.
   std::map<std::string, std::string> stamps;
+  // "page.port", "mqtt": keys of the tables that are not a camera's, and these tables.
+  Lines lines;
 };
 
 }  // namespace cerberus::robot

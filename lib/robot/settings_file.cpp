@@ -11,6 +11,7 @@
 
 #include "publish/streams/users.h"
 #include "robot/camera_settings.h"
+#include "robot/rivals.h"
 #include "robot/table_reader.h"
 #include "robot/tables/network_tables.h"
 #include "text/file.h"
@@ -97,18 +98,6 @@ void limit_moves(Settings& settings) {
       camera.head->push_back({"manual-timeout", std::string(kManualTimeout)});
 }
 
-std::string joined(Mistakes mistakes, std::string_view source) {
-  std::ranges::stable_sort(mistakes, {}, &text::TomlMistake::line);
-  std::string all;
-  for (const text::TomlMistake& mistake : mistakes) {
-    if (!all.empty()) all += '\n';
-    all += source;
-    if (mistake.line > 0) all += ':' + std::to_string(mistake.line);
-    all += ": " + mistake.text;
-  }
-  return all;
-}
-
 struct Parsed {
   Settings settings;
   Mistakes mistakes;
@@ -156,6 +145,11 @@ Parsed parse(std::string_view toml, Folders folders) {
   for (const CameraSettings& camera : settings.cameras)
     if (!camera.name.empty() && !names.insert(camera.name).second)
       mistakes.push_back({camera.line, "there are two cameras called \"" + camera.name + "\""});
+  reader.lines("", settings.lines);
+  for (const char* key : {"page", "rtsp", "mqtt", "base", "webhook"})
+    if (const TomlValue* table = file.root->find(key); table && table->is(TomlValue::Kind::table))
+      TableReader(*table, key, mistakes).lines(std::string(key) + '.', settings.lines);
+  find_rivals(settings, mistakes);
   reader.finish();
   return parsed;
 }
@@ -190,9 +184,21 @@ std::string stamp_of(const NamedFile& file) {
 
 }  // namespace
 
+std::string describe(Mistakes mistakes, std::string_view source) {
+  std::ranges::stable_sort(mistakes, {}, &text::TomlMistake::line);
+  std::string all;
+  for (const text::TomlMistake& mistake : mistakes) {
+    if (!all.empty()) all += '\n';
+    all += source;
+    if (mistake.line > 0) all += ':' + std::to_string(mistake.line);
+    all += ": " + mistake.text;
+  }
+  return all;
+}
+
 SettingsFile parse_settings(std::string_view toml, std::string_view source, std::string_view folder) {
   Parsed parsed = parse(toml, {folder, {}});
-  if (!parsed.mistakes.empty()) return {std::nullopt, joined(std::move(parsed.mistakes), source)};
+  if (!parsed.mistakes.empty()) return {std::nullopt, describe(std::move(parsed.mistakes), source)};
   return {std::move(parsed.settings), ""};
 }
 
@@ -215,7 +221,7 @@ SettingsFile load_settings(const std::string& path, std::string_view credentials
   for (const NamedFile& named : parsed.files)
     if (std::string fault = fault_of(named); !fault.empty())
       parsed.mistakes.push_back({named.line, std::move(fault)});
-  if (!parsed.mistakes.empty()) return {std::nullopt, joined(std::move(parsed.mistakes), path)};
+  if (!parsed.mistakes.empty()) return {std::nullopt, describe(std::move(parsed.mistakes), path)};
   for (const NamedFile& named : parsed.files) parsed.settings.stamps[named.owner] += stamp_of(named);
   return {std::move(parsed.settings), ""};
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "robot/settings.h"
+#include "robot/table_reader.h"
 
 namespace cerberus::robot {
 
@@ -23,6 +24,9 @@ SettingsFile load_settings(const std::string& path, std::string_view credentials
 // The same from text, without a look at any file. `source` stands for the file's name in errors, `folder` is put before
 // relative paths (empty: they stay).
 SettingsFile parse_settings(std::string_view toml, std::string_view source, std::string_view folder);
+
+// "robot.toml:12: ..." of each mistake, one a line, by line.
+std::string describe(Mistakes mistakes, std::string_view source);
 
 // The secret in a file: its first line. Returns nullopt and what is wrong, which never contains the secret.
 std::optional<std::string> read_secret(const std::string& path, std::string& error);

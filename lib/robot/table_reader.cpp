@@ -44,6 +44,10 @@ std::uint32_t TableReader::line(const char* key) const {
   return table_.line;
 }
 
+void TableReader::lines(const std::string& prefix, Lines& into) const {
+  for (const text::TomlMember& member : table_.members) into[prefix + member.key] = member.line;
+}
+
 void TableReader::complain(const char* key, const std::string& text) {
   mistakes_.push_back({line(key), text});
 }
@@ -169,7 +173,7 @@ void TableReader::properties(std::span<const Option> options, Properties& into) 
         break;
       }
     }
-    if (given) into.push_back({option.key, std::move(value)});
+    if (given) into.push_back({option.key, std::move(value), line(option.key)});
   }
 }
 

@@ -49,6 +49,8 @@ class TableReader {
   // Where a key stands, else where the table begins.
   std::uint32_t line(const char* key) const;
   void complain(const char* key, const std::string& text);
+  // Where the keys stand that are there; each begins with `prefix`.
+  void lines(const std::string& prefix, Lines& into) const;
   // Complains about the keys that were not asked for.
   void finish();
 

@@ -37,6 +37,9 @@ std::string read_words(const std::vector<drivers::OptionWord>& words, Options& o
   return {};
 }
 
+// From now on serve() returns at once: the words are read, and no device is opened.
+void only_check();
+
 // Serves the device until the end. emergency_stop: "CHIP:LINE" of a normally closed contact; empty: there is none.
 int serve(drivers::HeadDevice& device, const std::string& emergency_stop);
 

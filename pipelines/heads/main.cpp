@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "drivers/head/head_place.h"
@@ -34,7 +35,7 @@ int help() {
   std::printf(
       "cerberus-head DRIVER --device=DEVICE [WORD ...]\n"
       "Drives a pan-tilt head by the lines of docs/manual/head-protocol.md; pantiltsink and cerberus-heads "
-      "run it.\n"
+      "run it. With --check in front it only says what is wrong with the words.\n"
       "DRIVER: %s. WORDS: device-options of pantiltsink, one an argument.\n",
       kDrivers);
   return 0;
@@ -46,12 +47,19 @@ int main(int argc, char** argv) {
   namespace heads = cerberus::heads;
   // The end of the input stops the head and ends the program. A signal meant for the pipeline must not end it before.
   for (const int number : {SIGINT, SIGHUP, SIGTERM, SIGPIPE}) std::signal(number, SIG_IGN);
+  const bool checks = argc > 1 && std::string_view(argv[1]) == "--check";
+  if (checks) {
+    ++argv;
+    --argc;
+    heads::only_check();
+  }
   const std::string driver = argc > 1 ? argv[1] : "";
   if (driver == "--help" || driver == "-h") return help();
   const heads::Run run = heads::find_driver(driver);
   if (!run) return heads::fail("there is no head driver \"" + driver + "\": take " + kDrivers);
   std::vector<cerberus::drivers::OptionWord> words;
   for (int i = 2; i < argc; ++i) words.push_back(cerberus::drivers::option_word(argv[i]));
+  if (checks) return run(words);
   if (const std::string wrong = heads::hold_place(place_of(driver, words), kPatience); !wrong.empty())
     return heads::fail(wrong);
   return run(words);

@@ -5,32 +5,17 @@
 
 #include <cmath>
 
+#include "element_properties.h"
 #include "robot/settings_file.h"
 
 namespace cerberus::robot {
 
-namespace {
-
-// Sets a property by its text, as gst_parse_launch() would, but texts literally.
-bool set_property(GstElement* element, const Assignment& assignment, std::string& error) {
-  GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(element), assignment.property.c_str());
-  if (spec == nullptr) {
-    error = "this build's " + assignment.element + " has no property " + assignment.property;
-    return false;
-  }
-  if (G_PARAM_SPEC_VALUE_TYPE(spec) == G_TYPE_STRING)
-    g_object_set(element, assignment.property.c_str(), assignment.value.c_str(), nullptr);
-  else
-    gst_util_set_object_arg(G_OBJECT(element), assignment.property.c_str(), assignment.value.c_str());
-  return true;
-}
-
-}  // namespace
-
 bool Camera::apply(const PipelineText& text, std::string& error) {
   for (const Assignment& assignment : text.assignments) {
     g_autoptr(GstElement) found = element(assignment.element.c_str());
-    if (found == nullptr || !set_property(found, assignment, error)) return false;
+    if (found != nullptr && set_property(found, assignment, error)) continue;
+    error = assignment.property + " = " + assignment.value + ": " + error;
+    return false;
   }
   return true;
 }

@@ -8,6 +8,7 @@
 
 #include "robot.h"
 #include "robot/settings_file.h"
+#include "settings_trial.h"
 
 namespace {
 
@@ -42,13 +43,22 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "cerberusd: %s\n", error ? error->message : "which FILE? (cerberusd --help)");
     return 2;
   }
-  const auto load = [path = std::string(argv[1])] {
+  find_elements();
+  const auto load = [path = std::string(argv[1])](std::string* lacks) {
     const gchar* credentials = g_getenv("CREDENTIALS_DIRECTORY");
-    return cerberus::robot::load_settings(path, credentials ? credentials : "");
+    cerberus::robot::SettingsFile file = cerberus::robot::load_settings(path, credentials ? credentials : "");
+    if (!file.settings) return file;
+    cerberus::robot::Trial trial = cerberus::robot::try_settings(*file.settings);
+    if (lacks != nullptr) *lacks = cerberus::robot::describe(std::move(trial.lacks), path);
+    if (trial.mistakes.empty()) return file;
+    return cerberus::robot::SettingsFile{std::nullopt,
+                                         cerberus::robot::describe(std::move(trial.mistakes), path)};
   };
-  cerberus::robot::SettingsFile file = load();
-  if (!file.settings) {
-    std::fprintf(stderr, "%s\n", file.errors.c_str());
+  std::string lacks;
+  cerberus::robot::SettingsFile file = load(check ? &lacks : nullptr);
+  const std::string wrong = file.errors + (file.errors.empty() || lacks.empty() ? "" : "\n") + lacks;
+  if (!file.settings || !lacks.empty()) {
+    std::fprintf(stderr, "%s\n", wrong.c_str());
     return check ? 1 : kWrongConfiguration;
   }
   if (check) {
@@ -57,11 +67,10 @@ int main(int argc, char** argv) {
   }
   // What other threads hand to the main loop is never run by them, also before it runs.
   g_main_context_acquire(nullptr);
-  find_elements();
-  cerberus::robot::Robot robot(load);
-  std::string wrong;
-  if (!robot.open(*std::move(file.settings), wrong)) {
-    std::fprintf(stderr, "cerberusd: %s\n", wrong.c_str());
+  cerberus::robot::Robot robot([load] { return load(nullptr); });
+  std::string fault;
+  if (!robot.open(*std::move(file.settings), fault)) {
+    std::fprintf(stderr, "cerberusd: %s\n", fault.c_str());
     return 1;
   }
   return robot.run();

@@ -11,6 +11,7 @@
 #include <cstdio>
 
 #include "page_log.h"
+#include "settings_trial.h"
 #include "text/file.h"
 #if HAVE_SYSTEMD
 #include <systemd/sd-daemon.h>
@@ -22,12 +23,6 @@ namespace {
 
 // Seconds within which every camera stops: its files are finished in 3, its pipeline needs a little longer.
 constexpr int kPatience = 10;
-
-std::string default_state_folder() {
-  if (const char* given = g_getenv("STATE_DIRECTORY")) return given;  // of the service
-  g_autofree gchar* own = g_build_filename(g_get_user_data_dir(), "cerberus", nullptr);
-  return own;
-}
 
 std::int64_t offset_of_zone(std::int64_t utc) {
   const auto seconds = static_cast<time_t>(utc);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "cerberus/private/settings_query.hpp"
 #include "damage_mark.hpp"
 #include "shared/camera_mount.hpp"
 #include "shared/camera_path.hpp"
@@ -360,6 +361,10 @@ GstStateChangeReturn change_state(GstElement* element, GstStateChange change) {
   return GST_ELEMENT_CLASS(parent_class())->change_state(element, change);
 }
 
+std::string settings_fault(GstElement* element) {
+  return priv_of(element).analyser->settings_fault();
+}
+
 void class_init(CerberusAnalysisClass* klass) {
   GST_DEBUG_CATEGORY_INIT(cerberus_analysis_debug, "cerberusanalysis", 0,
                           "what all analysing elements share");
@@ -373,6 +378,7 @@ void class_init(CerberusAnalysisClass* klass) {
   gst_element_class_add_static_pad_template(GST_ELEMENT_CLASS(klass), &src);
 
   GST_ELEMENT_CLASS(klass)->change_state = change_state;
+  GST_ELEMENT_CLASS(klass)->query = settings_query<parent_class, settings_fault>;
 
   GstBaseTransformClass* trans = GST_BASE_TRANSFORM_CLASS(klass);
   trans->start = start;

@@ -49,6 +49,8 @@ class Analyser {
     unusable  // the buffer does not hold the picture of its caps
   };
   virtual ~Analyser() = default;
+  // What start() would refuse of the settings; any thread.
+  virtual std::string settings_fault() const { return {}; }
   // READY to PAUSED: begins in the initial state; returns false after posting an error. stop(): releases memory.
   virtual bool start() { return true; }
   virtual void stop() {}

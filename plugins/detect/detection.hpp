@@ -28,6 +28,7 @@ class Detection : public Analyser {
   Detection(vision::Stage first, vision::Stage last) : first_(first), last_(last) {}
   CerberusAnalysis* base = nullptr;
 
+  std::string settings_fault() const override { return vision::Zones().parse(snapshot().zones); }
   bool start() override;
   void stop() override;
   Outcome analyse(Frame& frame) override;

@@ -68,6 +68,7 @@
 #include <vector>
 
 #include "cerberus/private/element.hpp"
+#include "cerberus/private/settings_query.hpp"
 #include "fusion/decisions.h"
 #include "fusion/rule_check.h"
 #include "fusion/rule_file.h"
@@ -411,6 +412,12 @@ bool check_settings(CerberusPirFusion* self) {
   return false;
 }
 
+std::string settings_fault(GstElement* element) {
+  const Settings settings = cerberus_pir_fusion_self(element)->priv->settings.snapshot();
+  if (std::string fault = limits_fault(settings); !fault.empty()) return fault;
+  return settings.rules_file.empty() ? "" : fusion::load_rules(settings.rules_file).error;
+}
+
 void forget_everything(Private& priv) {
   priv.state = std::make_unique<State>();
   priv.settings.refresh();
@@ -495,6 +502,7 @@ void cerberus_pir_fusion_class_init(CerberusPirFusionClass* klass) {
   element->request_new_pad = request_new_pad;
   element->release_pad = release_pad;
   element->change_state = change_state;
+  element->query = settings_query<cerberus_pir_fusion_parent_class, settings_fault>;
   // The PIR pads first: a link without a pad's name (`queue ! fusion.`) takes the first template that fits.
   for (GstStaticPadTemplate* each : {&pir_template, &sink_template, &src_template})
     gst_element_class_add_static_pad_template(element, each);

@@ -7,6 +7,7 @@
 #include "drivers/head/head_calibration.h"
 #include "drivers/head/head_lease.h"
 #include "drivers/head/head_place.h"
+#include "drivers/iio/iio_gyro.h"
 #include "shared/choices.hpp"
 #include "shared/poses.hpp"
 
@@ -74,6 +75,24 @@ struct Posting {
   }
 };
 
+// The head's driver, and its setup complete; nullptr: `wrong` has the reason.
+std::unique_ptr<drivers::Head> prepare(const HeadSettings& s, drivers::HeadSetup& setup, std::string& wrong) {
+  if (!g_utf8_validate(s.head.c_str(), -1, nullptr))  // no event could carry it
+    wrong.append("The head's name \"").append(s.head).append("\" is no UTF-8: give it another (head=)");
+  if (wrong.empty()) wrong = motion::check(setup.limits);
+  if (wrong.empty() && !s.calibration.empty())
+    wrong = drivers::use_calibration(s.calibration, s.driver, setup);
+  if (wrong.empty()) {
+    wrong = setup.zoom_table.parse(s.zoom_table);
+    if (!wrong.empty()) wrong += " (zoom-table)";
+  }
+  auto head = drivers::make_head(s.driver);
+  if (wrong.empty() && !head)
+    wrong.append("There is no head driver \"").append(s.driver).append("\": take one of ") +=
+        drivers::head_drivers();
+  return wrong.empty() ? std::move(head) : nullptr;
+}
+
 // A head that is open, or being opened, and that no other sink of this process drives. nullptr: `element` has posted
 // why not. moved, refused: as of the runner.
 std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSettings& s,
@@ -81,17 +100,8 @@ std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSe
                                                std::function<void()> refused) {
   const char* name = s.head.c_str();
   std::string wrong;
-  if (!g_utf8_validate(name, -1, nullptr))  // no event could carry it
-    wrong.append("The head's name \"").append(s.head).append("\" is no UTF-8: give it another (head=)");
-  if (wrong.empty()) wrong = motion::check(setup.limits);
-  if (wrong.empty() && !s.calibration.empty())
-    wrong = drivers::use_calibration(s.calibration, s.driver, setup);
-  if (wrong.empty()) wrong = setup.zoom_table.parse(s.zoom_table);
-  auto head = drivers::make_head(s.driver);
-  if (wrong.empty() && !head)
-    wrong.append("There is no head driver \"").append(s.driver).append("\": take one of ") +=
-        drivers::head_drivers();
-  if (!wrong.empty()) {
+  auto head = prepare(s, setup, wrong);
+  if (!head) {
     CERBERUS_ELEMENT_ERROR(element, RESOURCE, SETTINGS, (wrong + "."), ("head %s", name));
     return nullptr;
   }
@@ -127,6 +137,20 @@ control::FusionDecision from_c(const CerberusFusion& fusion) {
   decision.made.sector = {sensing::radians(fusion.sector_from), sensing::radians(fusion.sector_to)};
   if (GST_CLOCK_TIME_IS_VALID(fusion.decided)) decision.decided = time_of(fusion.decided);
   return decision;
+}
+
+std::string HeadSession::settings_fault() const {
+  const HeadSettings s = settings.snapshot();
+  drivers::HeadSetup setup = head_setup(s);
+  std::string wrong;
+  const auto head = prepare(s, setup, wrong);
+  if (head) wrong = head->check(setup);
+  drivers::GyroSetup gyro_setup;
+  if (wrong.empty() && !s.base_gyro.empty()) {
+    wrong = drivers::parse_gyro(s.base_gyro, gyro_setup);
+    if (!wrong.empty()) wrong += " (base-gyro)";
+  }
+  return wrong;
 }
 
 void HeadSession::send(const Reports& reports) const {

@@ -36,6 +36,8 @@ struct HeadSession {
   std::atomic<bool> watched = true;  // false: the head needs a ticker and the system has no thread for it
   std::mutex changing;               // keeps the ticker waiting
 
+  // What open() would refuse of the settings, without a look at any device.
+  std::string settings_fault() const;
   // From READY to PAUSED and back. Returns false after posting an error.
   bool open();
   void close();

@@ -98,6 +98,7 @@
 #include <utility>
 
 #include "cerberus/private/element.hpp"
+#include "cerberus/private/settings_query.hpp"
 #include "head_session.hpp"
 #include "shared/camera_mount.hpp"
 #include "shared/camera_path.hpp"
@@ -436,6 +437,10 @@ void add_signal(GObjectClass* klass, const char* name, GCallback handler, guint 
                              nullptr, nullptr, G_TYPE_BOOLEAN, count, type, type);
 }
 
+std::string settings_fault(GstElement* element) {
+  return cerberus_pan_tilt_sink_self(element)->priv->session.settings_fault();
+}
+
 void cerberus_pan_tilt_sink_class_init(CerberusPanTiltSinkClass* klass) {
   GObjectClass* object = G_OBJECT_CLASS(klass);
   object->set_property = set_property;
@@ -451,6 +456,7 @@ void cerberus_pan_tilt_sink_class_init(CerberusPanTiltSinkClass* klass) {
 
   GstElementClass* element = GST_ELEMENT_CLASS(klass);
   element->change_state = cerberus_pan_tilt_sink_change_state;
+  element->query = settings_query<cerberus_pan_tilt_sink_parent_class, settings_fault>;
   element->send_event = cerberus_pan_tilt_sink_send_event;
   gst_element_class_set_static_metadata(element, "Pan-tilt head", "Sink/Video/Device",
                                         "Turns a pan-tilt head towards what camera and sensors found",

@@ -59,6 +59,7 @@
 #include <cerberus/pir.h>
 #include <gst/base/gstpushsrc.h>
 #include <cerberus/private/element.hpp>
+#include <cerberus/private/settings_query.hpp>
 
 #include <chrono>
 #include <condition_variable>
@@ -160,21 +161,42 @@ void refused(CerberusPirSrc* self) {
       nullptr, nullptr);
 }
 
+// The driver that the settings name, and the arrangement of its sensors; nullptr: `error` has the reason.
+std::unique_ptr<drivers::Sensor> arrange(const PirSettings& settings, CerberusPirInfo& info,
+                                         drivers::SensorError& error) {
+  if (const std::string why = pir_info(settings, info); !why.empty()) {
+    error = {drivers::SensorFault::settings, "PIR sensors cannot be arranged so: " + why + ".", ""};
+    return nullptr;
+  }
+  auto sensor = drivers::make_sensor(settings.driver);
+  if (!sensor)
+    error = {
+        drivers::SensorFault::settings,
+        "There is no PIR driver \"" + settings.driver + "\". Drivers: " + drivers::sensor_drivers() + ".",
+        ""};
+  return sensor;
+}
+
+// A recording is opened: that takes nothing from anybody.
+std::string settings_fault(GstElement* element) {
+  const PirSettings settings = cerberus_pir_src_self(element)->priv->settings.snapshot();
+  CerberusPirInfo info;
+  drivers::SensorError error;
+  const auto sensor = arrange(settings, info, error);
+  if (!sensor) return error.text;
+  const drivers::SensorSetup setup = sensor_setup(settings, info.sensors);
+  error = drivers::is_device(settings.driver) ? sensor->check(setup) : sensor->open(setup);
+  return error.text;
+}
+
 bool open_sensors(CerberusPirSrc* self) {
   Private& priv = *self->priv;
   const PirSettings settings = priv.settings.snapshot();
   CerberusPirInfo info;
-  if (const std::string why = pir_info(settings, info); !why.empty()) {
-    report_error(GST_ELEMENT(self),
-                 {drivers::SensorFault::settings, "PIR sensors cannot be arranged so: " + why + ".", ""});
-    return false;
-  }
-  auto sensor = drivers::make_sensor(settings.driver);
+  drivers::SensorError refused_so;
+  auto sensor = arrange(settings, info, refused_so);
   if (!sensor) {
-    report_error(GST_ELEMENT(self), {drivers::SensorFault::settings,
-                                     "There is no PIR driver \"" + settings.driver +
-                                         "\". Drivers: " + drivers::sensor_drivers() + ".",
-                                     ""});
+    report_error(GST_ELEMENT(self), refused_so);
     return false;
   }
   const Time heartbeat = std::max(time_of(settings.heartbeat), kLeastHeartbeat);
@@ -445,6 +467,7 @@ void cerberus_pir_src_class_init(CerberusPirSrcClass* klass) {
   object->get_property = get_property;
   Adjustable<PirSettings>::install(object, pir_properties(), GParamFlags(GST_PARAM_MUTABLE_READY));
   GST_ELEMENT_CLASS(klass)->change_state = change_state;
+  GST_ELEMENT_CLASS(klass)->query = settings_query<cerberus_pir_src_parent_class, settings_fault>;
   GST_ELEMENT_CLASS(klass)->send_event = send_event;
   auto* src = GST_BASE_SRC_CLASS(klass);
   src->stop = stop;

@@ -48,6 +48,7 @@
 #include <vector>
 
 #include "cerberus/private/element.hpp"
+#include "cerberus/private/settings_query.hpp"
 #include "mqtt_client.hpp"
 #include "publish/burst_limit.h"
 #include "publish/mqtt_report.h"
@@ -216,16 +217,35 @@ void obey(CerberusMqttPublish* self, const std::string& name, const std::string&
                                               G_TYPE_BOOLEAN, done, nullptr)));
 }
 
-bool read_password(CerberusMqttPublish* self, const std::string& path, std::string& password) {
-  if (path.empty()) return true;
+// What is wrong with the settings, for a user; empty: nothing, and `password` is the broker's.
+std::string settings_fault(const Settings& settings, std::string& password) {
+  const std::string camera = settings.camera_name.empty() ? "camera" : settings.camera_name;
+  if (!publish::is_topic_level(settings.prefix) || !publish::is_topic_level(camera))
+    return "topic-prefix and camera-name must be levels of a topic, without / + #.";
+  if (!settings.discovery.empty() && !publish::is_topic(settings.discovery))
+    return "\"" + settings.discovery +
+           "\" (discovery-prefix) is no topic: levels with / between them, without + #.";
+  if (settings.discovery == settings.prefix)
+    return "\"" + settings.prefix +
+           "\" is topic-prefix and discovery-prefix: Home Assistant would take states for descriptions. "
+           "Give topic-prefix another.";
+  if (!settings.ca_file.empty()) {
+    constexpr std::size_t kMostCertificates = 1 << 20;  // bytes; a system's whole list has a fifth of it
+    const text::File file = text::read_file(settings.ca_file, kMostCertificates);
+    if (file.fault != text::File::Fault::none || file.text.find("-----BEGIN ") == file.text.npos)
+      return "\"" + settings.ca_file + "\" (ca-file) is no file with certificates in PEM.";
+  }
+  if (settings.password_file.empty()) return {};
   constexpr std::size_t kMostBytes = 4096;
-  const text::File file = text::read_file(path, kMostBytes);
+  const text::File file = text::read_file(settings.password_file, kMostBytes);
   password = file.text.substr(0, file.text.find_first_of("\r\n"));
-  if (file.fault == text::File::Fault::none && !password.empty()) return true;
-  CERBERUS_ELEMENT_ERROR(self, RESOURCE, OPEN_READ,
-                         ("\"%s\" is no file whose first line is a password.", path.c_str()),
-                         ("errno %d", file.error));
-  return false;
+  if (file.fault == text::File::Fault::none && !password.empty()) return {};
+  return "\"" + settings.password_file + "\" (password-file) is no file whose first line is a password.";
+}
+
+std::string settings_fault(GstElement* element) {
+  std::string password;
+  return settings_fault(cerberus_mqtt_publish_self(element)->priv->settings.snapshot(), password);
 }
 
 gboolean cerberus_mqtt_publish_start(GstBaseTransform* transform) {
@@ -234,18 +254,6 @@ gboolean cerberus_mqtt_publish_start(GstBaseTransform* transform) {
     Private& p = *self->priv;
     const Settings settings = p.settings.snapshot();
     const std::string camera = settings.camera_name.empty() ? "camera" : settings.camera_name;
-    if (!publish::is_topic_level(settings.prefix) || !publish::is_topic_level(camera)) {
-      CERBERUS_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
-                             ("topic-prefix and camera-name must be levels of a topic, without / + #."),
-                             (nullptr));
-      return FALSE;
-    }
-    if (!settings.ca_file.empty() && !g_file_test(settings.ca_file.c_str(), G_FILE_TEST_IS_REGULAR)) {
-      CERBERUS_ELEMENT_ERROR(self, RESOURCE, NOT_FOUND,
-                             ("\"%s\" (ca-file) is no file with certificates.", settings.ca_file.c_str()),
-                             (nullptr));
-      return FALSE;
-    }
     plugin::MqttServer server{.host = settings.host,
                               .port = settings.port,
                               .user = settings.user,
@@ -255,7 +263,10 @@ gboolean cerberus_mqtt_publish_start(GstBaseTransform* transform) {
                               .status = {},
                               .commands = {},
                               .topics = {}};
-    if (!read_password(self, settings.password_file, server.password)) return FALSE;
+    if (const std::string wrong = settings_fault(settings, server.password); !wrong.empty()) {
+      CERBERUS_ELEMENT_ERROR(self, RESOURCE, SETTINGS, (wrong), (nullptr));
+      return FALSE;
+    }
     p.report.emplace(settings.prefix, camera);
     p.stamps.reset();
     p.discovery = settings.discovery;
@@ -381,6 +392,7 @@ void cerberus_mqtt_publish_class_init(CerberusMqttPublishClass* klass) {
                                         "The Cerberus developers");
   gst_element_class_add_static_pad_template(element, &sink_template);
   gst_element_class_add_static_pad_template(element, &src_template);
+  element->query = settings_query<cerberus_mqtt_publish_parent_class, settings_fault>;
   GstBaseTransformClass* transform = GST_BASE_TRANSFORM_CLASS(klass);
   transform->start = cerberus_mqtt_publish_start;
   transform->stop = cerberus_mqtt_publish_stop;

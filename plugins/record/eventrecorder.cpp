@@ -86,6 +86,7 @@
 #include <cerberus/cerberus.h>
 
 #include "cerberus/private/element.hpp"
+#include "cerberus/private/settings_query.hpp"
 #include "playing_gate.hpp"
 #include "session.hpp"
 #include "shared/clock_times.hpp"
@@ -297,6 +298,11 @@ bool check_settings(CerberusEventRecorder* self) {
   return false;
 }
 
+std::string settings_fault(GstElement* element) {
+  const auto fault = plugin::settings_fault(cerberus_event_recorder_self(element)->priv->settings.snapshot());
+  return fault && fault->kind == plugin::SettingsFault::Kind::settings ? fault->text : "";
+}
+
 bool begin(CerberusEventRecorder* self) {
   // A thread that waits for a disk may outlast the element's stop, and the element's owner.
   const std::shared_ptr<CerberusEventRecorder> own(cerberus_event_recorder_self(gst_object_ref(self)),
@@ -383,6 +389,7 @@ void cerberus_event_recorder_class_init(CerberusEventRecorderClass* klass) {
   element->request_new_pad = cerberus_event_recorder_request_new_pad;
   element->release_pad = cerberus_event_recorder_release_pad;
   element->change_state = cerberus_event_recorder_change_state;
+  element->query = cerberus::settings_query<cerberus_event_recorder_parent_class, settings_fault>;
 
   const auto action = [&](const char* name, GCallback handler, guint parameters, GType first, GType second) {
     g_signal_new_class_handler(name, G_TYPE_FROM_CLASS(klass),

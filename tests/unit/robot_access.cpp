@@ -6,6 +6,7 @@
 
 #include "robot/base_drive.h"
 #include "robot/byte_range.h"
+#include "robot/client_address.h"
 #if HAVE_ARGON2
 #include "robot/passwords.h"
 #endif
@@ -109,6 +110,44 @@ START_TEST(only_the_entrance_is_open_and_what_changes_needs_more) {
   ck_assert(find_route("GET", "/events/a/1/video")->role == Role::viewer);
   ck_assert(!find_route("GET", "/delete") && !find_route("GET", "/eventsx") && !find_route("PUT", "/login"));
   ck_assert(!find_route("GET", "") && !find_route("GET", "/page.js/") && !find_route("HEAD", "/events"));
+}
+END_TEST
+
+START_TEST(a_trusted_proxy_tells_whose_request_it_hands_on_and_nobody_else_does) {
+  const std::vector<std::string> trusted{"127.0.0.1", "10.0.0.0/8", "fd00::/8"};
+  const struct {
+    const char *peer, *x_forwarded_for, *forwarded, *client;
+  } cases[] = {
+      {"192.168.1.7", "", "", "192.168.1.7"},
+      {"192.168.1.7", "203.0.113.5", "for=203.0.113.5", "192.168.1.7"},  // of no trusted proxy
+      {"127.0.0.1", "203.0.113.5", "", "203.0.113.5"},
+      {"::ffff:127.0.0.1", "203.0.113.5", "", "203.0.113.5"},
+      {"127.0.0.1", "192.0.2.1, 203.0.113.5", "", "203.0.113.5"},  // left of it is what the stranger wrote
+      {"127.0.0.1", "192.0.2.1, 203.0.113.5, 10.1.2.3", "", "203.0.113.5"},  // two proxies
+      {"10.1.2.3", "203.0.113.5:4711", "", "203.0.113.5"},
+      {"10.1.2.3", "[2001:db8::1]:4711", "", "2001:db8::1"},
+      {"fd00::7", "2001:DB8:0:0::1", "", "2001:db8::1"},
+      {"127.0.0.1", "", "for=192.0.2.1;proto=https, For=\"[2001:db8::1]:4711\";by=_x", "2001:db8::1"},
+      {"127.0.0.1", "", "for=203.0.113.5", "203.0.113.5"},
+      {"127.0.0.1", "", "for=unknown", "127.0.0.1"},
+      {"127.0.0.1", "", "by=\"a,for=1.2.3.4\"", "127.0.0.1"},
+      {"127.0.0.1", "203.0.113.5", "for=192.0.2.1", "127.0.0.1"},  // one is not the proxy's
+      {"127.0.0.1", "203.0.113.5", "for=203.0.113.5", "203.0.113.5"},
+      {"127.0.0.1", "203.0.113.5, nonsense", "", "127.0.0.1"},
+      {"127.0.0.1", "10.0.0.1", "", "10.0.0.1"},  // all of them trusted: the first
+      {"127.0.0.1", ", ,", "", "127.0.0.1"},
+  };
+  for (const auto& one : cases) {
+    const Client client = client_of(one.peer, trusted, one.x_forwarded_for, one.forwarded);
+    ck_assert_msg(client.address == one.client, "%s, \"%s\", \"%s\": %s, not %s", one.peer,
+                  one.x_forwarded_for, one.forwarded, client.address.c_str(), one.client);
+    ck_assert(client.proxied == (*one.x_forwarded_for != 0 || *one.forwarded != 0));
+  }
+  for (const char* right : {"127.0.0.1", "10.0.0.0/8", "0.0.0.0/0", "::1", "fd00::/8", "::/0"})
+    ck_assert_msg(is_network(right), "%s", right);
+  for (const char* wrong :
+       {"", "proxy", "10.0.0.0/33", "fd00::/129", "10.0.0.0/", "10.0.0.0/8x", "10.0.0.0/-1"})
+    ck_assert_msg(!is_network(wrong), "%s", wrong);
 }
 END_TEST
 
@@ -361,6 +400,7 @@ int main() {
                           every_message_is_read_letter_by_letter,
                           a_viewer_may_watch_an_operator_steer_and_the_owner_begin_and_end_privacy,
                           only_the_entrance_is_open_and_what_changes_needs_more,
+                          a_trusted_proxy_tells_whose_request_it_hands_on_and_nobody_else_does,
                           another_name_for_this_machine_is_refused,
                           an_origin_is_the_pages_own_or_configured,
                           a_session_ends_after_12_idle_hours_after_a_week_and_when_it_is_ended,

@@ -21,7 +21,9 @@ using namespace cerberus::robot;
 
 namespace {
 
-const std::string kSmallest = "[[camera]]\nname = \"front\"\nkind = \"test\"\n";
+#define SMALLEST "[[camera]]\nname = \"front\"\nkind = \"test\"\n"
+#define HEAD(driver, device) "[camera.head]\ndriver = \"" driver "\"\ndevice = \"" device "\"\n"
+const std::string kSmallest = SMALLEST;
 
 std::string read(const std::string& name) {
   const char* source = std::getenv("CERBERUS_SOURCE");
@@ -169,6 +171,16 @@ START_TEST(every_mistake_is_reported_with_its_line) {
        "r.toml:6: unknown key \"pre-role\" in [camera.recorder]: is \"pre-roll\" meant?"},
       {"[[camera]]\nname = \"a\"\nkind = \"test\"\n[[camera]]\nname = \"a\"\nkind = \"test\"\n",
        "r.toml:4: there are two cameras called \"a\""},
+      {"[page]\nport = 8554\n[rtsp]\n" SMALLEST, "r.toml:2: \"port\" is 8554 of both [page] and [rtsp]"},
+      {"[page]\n[rtsp]\nport = 8080\n" SMALLEST, "r.toml:3: \"port\" is 8080 of both"},
+      {"[[camera]]\nname = \"a\"\nkind = \"rtsp\"\nuri = \"rtsp://b\"\nrecord-uri = \"rtsp://c\"\n",
+       "r.toml:5: \"record-uri\" is \"rtsp://c\", and nothing takes that stream"},
+      {SMALLEST HEAD("visca", "serial:/dev/tty9") "[[camera]]\nname = \"b\"\nkind = \"test\"\n" HEAD(
+           "visca", "serial:/dev//tty9"),
+       "r.toml:12: \"device\" of camera \"b\" is \"serial:/dev//tty9\", which camera \"front\" uses already"},
+      {SMALLEST HEAD("pelco-d", "serial:/dev/tty9") "[camera.sensors]\ndriver = \"external\"\ndevice = "
+                                                    "\"serial:/dev/tty9\"\n",
+       "r.toml:9: \"device\" is \"serial:/dev/tty9\" of the head of camera \"front\" and of the sensors"},
       {"[page]\nport = \n", "r.toml:2: "},
       {"[page]\nlisten = \"localhost\"\n", "r.toml:2: \"listen\" is a numeric address"},
       {"[page]\nlisten = \"127.0.0.1:80\"\n", "r.toml:2: \"listen\" is a numeric address"},

@@ -63,24 +63,31 @@ SensorError EvdevSensor::check_codes() const {
   return {};
 }
 
-SensorError EvdevSensor::open(const SensorSetup& setup) {
-  close();
+SensorError EvdevSensor::check(const SensorSetup& setup) const {
   if (setup.codes.size() != static_cast<std::size_t>(setup.sensors))
     return {SensorFault::settings,
             "Name one key or switch for each of the " + std::to_string(setup.sensors) + " sensors (codes); " +
                 std::to_string(setup.codes.size()) + " are named.",
             ""};
-  codes_.clear();
+  std::vector<InputCode> codes;
   for (const std::string& word : setup.codes) {
     const auto code = parse_input_code(word);
     if (!code)
       return {SensorFault::settings,
               "\"" + word + "\" is no key or switch: write key:30, switch:11 or a name as BTN_0 (codes).",
               ""};
-    if (std::ranges::find(codes_, *code) != codes_.end())
+    if (std::ranges::find(codes, *code) != codes.end())
       return {SensorFault::settings, "The key or switch " + word + " is named twice (codes).", ""};
-    codes_.push_back(*code);
+    codes.push_back(*code);
   }
+  return {};
+}
+
+SensorError EvdevSensor::open(const SensorSetup& setup) {
+  close();
+  if (SensorError error = check(setup)) return error;
+  codes_.clear();
+  for (const std::string& word : setup.codes) codes_.push_back(*parse_input_code(word));
   wanted_ = setup.device;
   SensorError error = find(wanted_);
   if (!error) {

@@ -13,6 +13,7 @@ namespace cerberus::drivers {
 class EvdevSensor final : public Sensor {
  public:
   ~EvdevSensor() override { close(); }
+  SensorError check(const SensorSetup& setup) const override;
   SensorError open(const SensorSetup& setup) override;
   void close() noexcept override;
   void stop() noexcept override {}

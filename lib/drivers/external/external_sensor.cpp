@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "drivers/helper/option_words.h"
+#include "drivers/helper/program_check.h"
 #include "text/numbers.h"
 
 namespace cerberus::drivers {
@@ -20,7 +21,6 @@ namespace cerberus::drivers {
 namespace {
 
 constexpr std::string_view kSerial = "serial:";
-constexpr int kBaud = 115200;
 constexpr double kMostSilence = 3600;  // seconds
 
 SensorError open_fifo(const std::string& path, int& fd) {
@@ -43,18 +43,15 @@ SensorError open_fifo(const std::string& path, int& fd) {
 
 }  // namespace
 
-SensorError ExternalSensor::set_options(const std::string& options) {
-  baud_ = kBaud;
-  silence_ = kSilence;
-  measures_ = false;
+SensorError ExternalSensor::read_options(const std::string& options, Options& into) {
   for (const OptionWord& word : option_words(options)) {
     const auto number = number_of(word.value);
     if (word.key == "baud" && number && *number >= 1 && *number <= 1e6) {
-      baud_ = static_cast<int>(*number);
+      into.baud = static_cast<int>(*number);
     } else if (word.key == "silence" && number && *number >= 0 && *number <= kMostSilence) {
-      silence_ = std::chrono::duration_cast<Time>(std::chrono::duration<double>(*number));
+      into.silence = std::chrono::duration_cast<Time>(std::chrono::duration<double>(*number));
     } else if (word.key == "volts" && !word.has_value) {
-      measures_ = true;
+      into.measures = true;
     } else {
       return {SensorFault::settings,
               "\"" + word.key + (word.has_value ? "=" + word.value : "") +
@@ -76,7 +73,7 @@ SensorError ExternalSensor::connect() {
   }
   if (!device_.starts_with(kSerial)) return open_fifo(device_, fifo_);
   errno = 0;
-  const std::string wrong = serial_.open(device_, baud_);
+  const std::string wrong = serial_.open(device_, options_.baud);
   const int error = errno;
   if (wrong.empty()) return {};
   const auto fault = error == 0        ? SensorFault::settings
@@ -86,14 +83,25 @@ SensorError ExternalSensor::connect() {
   return {fault, described(wrong) + ".", ""};
 }
 
-SensorError ExternalSensor::open(const SensorSetup& setup) {
-  close();
+SensorError ExternalSensor::check(const SensorSetup& setup) const {
   if (setup.command.empty() == setup.device.empty())
     return {
         SensorFault::settings,
         "External sensors need either a command or a device (serial:/dev/ttyUSB0, or the path of a FIFO).",
         ""};
-  if (SensorError error = set_options(setup.options)) return error;
+  Options options;
+  if (SensorError error = read_options(setup.options, options)) return error;
+  if (setup.command.empty()) return {};
+  const std::string wrong = command_fault(setup.command);
+  return wrong.empty() ? SensorError{}
+                       : SensorError{SensorFault::settings, "The command: " + wrong + ".", ""};
+}
+
+SensorError ExternalSensor::open(const SensorSetup& setup) {
+  close();
+  if (SensorError error = check(setup)) return error;
+  options_ = {};
+  read_options(setup.options, options_);
   command_ = setup.command;
   device_ = setup.device;
   name_ = command_.empty() ? device_ : "the command \"" + command_ + "\"";
@@ -151,7 +159,7 @@ void ExternalSensor::on_levels(const SensorLevels& found, Time now, std::vector<
     if (found.measured) {
       edge.known = !std::isnan(found.volts[at]);
       edge.level = switches_[at].update(found.volts[at]);
-      if (measures_) edge.volts = found.volts[at];
+      if (options_.measures) edge.volts = found.volts[at];
     } else {
       edge.known = found.levels[at].has_value();
       edge.level = found.levels[at].value_or(false);
@@ -223,9 +231,9 @@ SensorError ExternalSensor::read(Time now, std::vector<SensorEdge>& edges) {
   }
   if (SensorError wrong = take(now, edges)) return wrong;
   if (!heard_) heard_ = now;
-  if (silence_ > Time::zero() && now - *heard_ >= silence_ && fd() >= 0) {
+  if (options_.silence > Time::zero() && now - *heard_ >= options_.silence && fd() >= 0) {
     heard_ = now;
-    const double seconds = std::chrono::duration<double>(silence_).count();
+    const double seconds = std::chrono::duration<double>(options_.silence).count();
     outage_ = described("no line of the protocol has come for " + text::rounded(seconds, 3).string() +
                         (garbled_ ? " s, but other bytes: check the baud rate (device-options)" : " s"));
     forget_levels(now, false, edges);

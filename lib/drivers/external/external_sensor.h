@@ -18,6 +18,7 @@ class ExternalSensor final : public Sensor {
  public:
   // setup.options: "baud=N" of a serial port (115200), "silence=SECONDS" after which a sender that sends no line counts
   // as failed (3; 0 = never), "volts" (the sender sends volts, and these can be taken downstream).
+  SensorError check(const SensorSetup& setup) const override;
   SensorError open(const SensorSetup& setup) override;
   ~ExternalSensor() override { close(); }
   void close() noexcept override;
@@ -25,14 +26,19 @@ class ExternalSensor final : public Sensor {
   int fd() const override;
   SensorError read(Time now, std::vector<SensorEdge>& edges) override;
   std::string place(int sensor) const override;
-  bool measures() const override { return measures_; }
+  bool measures() const override { return options_.measures; }
   std::string outage() const override { return outage_; }
 
   static constexpr std::chrono::milliseconds kReopen{1000};
   static constexpr std::chrono::seconds kSilence{3};
 
  private:
-  SensorError set_options(const std::string& options);
+  struct Options {
+    int baud = 115200;
+    Time silence = kSilence;
+    bool measures = false;
+  };
+  static SensorError read_options(const std::string& text, Options& into);
   SensorError connect();
   void disconnect() noexcept;
   SensorError take(Time now, std::vector<SensorEdge>& edges);
@@ -43,9 +49,8 @@ class ExternalSensor final : public Sensor {
   std::string described(const std::string& why) const;
 
   std::string command_, device_, name_;  // name_: for messages
-  int sensors_ = 0, baud_ = 0;
-  Time silence_{};
-  bool measures_ = false;
+  int sensors_ = 0;
+  Options options_;
   HelperProcess process_;
   ByteStream serial_;
   int fifo_ = -1;

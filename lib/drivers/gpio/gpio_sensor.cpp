@@ -25,8 +25,7 @@ SensorError GpioSensor::request(const SensorSetup& setup) {
   return error ? lines_refused(lines_, chip_, error, outputs_) : SensorError{};
 }
 
-SensorError GpioSensor::open(const SensorSetup& setup) {
-  close();
+SensorError GpioSensor::check(const SensorSetup& setup) const {
   const auto count = static_cast<std::size_t>(setup.sensors);
   if (setup.lines.size() != count)
     return {SensorFault::settings,
@@ -37,6 +36,21 @@ SensorError GpioSensor::open(const SensorSetup& setup) {
     if (!leds->empty() && leds->size() != count)
       return {SensorFault::settings,
               "Name one LED of a colour for each of the " + std::to_string(count) + " sensors, or none.", ""};
+  std::vector<std::string> all = setup.lines;
+  all.insert(all.end(), setup.red.begin(), setup.red.end());
+  all.insert(all.end(), setup.blue.begin(), setup.blue.end());
+  for (auto one = all.begin(); one != all.end(); ++one)
+    if (std::find(all.begin(), one, *one) != one)
+      return {SensorFault::settings,
+              "The GPIO line " + *one +
+                  " is named twice: each sensor and each LED has its own (lines, leds-red, leds-blue).",
+              ""};
+  return {};
+}
+
+SensorError GpioSensor::open(const SensorSetup& setup) {
+  close();
+  if (SensorError error = check(setup)) return error;
   SensorError error = open_gpio_chip(lines_, setup.chip, chip_);
   if (!error) error = request(setup);
   if (!error)

@@ -12,6 +12,7 @@ namespace cerberus::drivers {
 class GpioSensor final : public Sensor {
  public:
   ~GpioSensor() override { close(); }
+  SensorError check(const SensorSetup& setup) const override;
   SensorError open(const SensorSetup& setup) override;
   void close() noexcept override;
   void stop() noexcept override;

@@ -47,6 +47,8 @@ struct HeadCommand {
 class Head {
  public:
   virtual ~Head() = default;
+  // What open() refuses of the settings alone, without a look at any device. open() asks it first.
+  virtual std::string check(const HeadSetup&) const { return {}; }
   virtual std::string open(const HeadSetup& setup) = 0;
   virtual void close() noexcept = 0;         // stops; safe at any time and any number of times
   virtual void stop(Time now) noexcept = 0;  // brakes as hard as permitted and stays; as close()

@@ -16,6 +16,7 @@
 #include "drivers/helper/helper_process.h"
 #include "drivers/helper/option_words.h"
 #include "drivers/helper/passwords.h"
+#include "drivers/helper/program_check.h"
 #include "text/numbers.h"
 
 namespace cerberus::drivers {
@@ -32,12 +33,28 @@ struct Parameters {
   std::chrono::milliseconds refused_patience{500};
 };
 constexpr Parameters kParameters;
+constexpr std::string_view kFault = "fault ";  // what such an answer of a helper begins with
 
 // HeadSetup::options as words; blanks part them, single quotes keep them.
 std::vector<std::string> own_helper(const std::string& driver, const HeadSetup& setup) {
   std::vector<std::string> words{setup.helper, driver, "--device=" + setup.device};
   for (const std::string& word : quoted_words(setup.options)) words.push_back("--" + word);
   return words;
+}
+
+// What is wrong with the settings that every helper has.
+std::string settings_fault(const std::string& driver, const HeadSetup& setup) {
+  const bool external = driver == "external";
+  if (external && setup.command.empty()) return "the driver external needs a helper to run (command=)";
+  if (!external && setup.device.empty()) return "the driver " + driver + " needs a device (device=)";
+  if (setup.lock_zoom && driver != "visca" && driver != "v4l2" && driver != "onvif")
+    return "the driver " + driver + " keeps no zoom: lock-zoom is for visca, v4l2 and onvif";
+  for (const std::string& setting : {setup.device, setup.options})
+    if (std::string wrong = refuse_password(setting); !wrong.empty()) return wrong;
+  if (setup.helper_timeout < std::chrono::milliseconds(1) || setup.helper_timeout > std::chrono::seconds(10))
+    return "helper-timeout must be 1 ms to 10 s, and is " +
+           text::significant(motion::seconds(setup.helper_timeout), 6).string() + " s";
+  return {};
 }
 
 Time since_start(Clock::time_point at) {
@@ -153,18 +170,23 @@ HelperHead::~HelperHead() {
   close();
 }
 
+// Asks the helper, too, which knows its options.
+std::string HelperHead::check(const HeadSetup& setup) const {
+  if (std::string wrong = settings_fault(driver_, setup); !wrong.empty()) return wrong;
+  if (driver_ == "external") {
+    const std::string wrong = command_fault(setup.command);
+    return wrong.empty() ? wrong : "the command: " + wrong;
+  }
+  std::vector<std::string> words = helper_arguments(driver_, setup);
+  words.insert(words.begin() + 1, "--check");
+  const std::string said = first_line_of(words);
+  return said.starts_with(kFault) ? said.substr(kFault.size()) + " (device-options)" : "";
+}
+
 std::string HelperHead::open(const HeadSetup& setup) {
   close();
+  if (std::string wrong = settings_fault(driver_, setup); !wrong.empty()) return wrong;
   const bool external = driver_ == "external";
-  if (external && setup.command.empty()) return "the driver external needs a helper to run (command=)";
-  if (!external && setup.device.empty()) return "the driver " + driver_ + " needs a device (device=)";
-  if (setup.lock_zoom && driver_ != "visca" && driver_ != "v4l2" && driver_ != "onvif")
-    return "the driver " + driver_ + " keeps no zoom: lock-zoom is for visca, v4l2 and onvif";
-  for (const std::string& setting : {setup.device, setup.options})
-    if (std::string wrong = refuse_password(setting); !wrong.empty()) return wrong;
-  if (setup.helper_timeout < std::chrono::milliseconds(1) || setup.helper_timeout > std::chrono::seconds(10))
-    return "helper-timeout must be 1 ms to 10 s, and is " +
-           text::significant(motion::seconds(setup.helper_timeout), 6).string() + " s";
   auto core = std::make_shared<Core>();
   std::unique_lock guard(core->lock);
   if (std::string wrong = core->client.open(setup); !wrong.empty()) return wrong;

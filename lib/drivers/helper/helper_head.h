@@ -25,6 +25,7 @@ class HelperHead final : public Head {
   explicit HelperHead(std::string driver) : driver_(std::move(driver)) {}
   ~HelperHead() override;
 
+  std::string check(const HeadSetup& setup) const override;
   std::string open(const HeadSetup& setup) override;
   void close() noexcept override;
   void stop(Time now) noexcept override;

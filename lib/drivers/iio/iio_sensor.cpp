@@ -94,13 +94,18 @@ SensorError IioSensor::find_channels(const SensorSetup& setup) {
   return {};
 }
 
-SensorError IioSensor::open(const SensorSetup& setup) {
-  close();
+SensorError IioSensor::check(const SensorSetup& setup) const {
   if (setup.channels.size() != static_cast<std::size_t>(setup.sensors))
     return {SensorFault::settings,
             "Name one IIO channel for each of the " + std::to_string(setup.sensors) +
                 " sensors (channels); " + std::to_string(setup.channels.size()) + " are named.",
             ""};
+  return {};
+}
+
+SensorError IioSensor::open(const SensorSetup& setup) {
+  close();
+  if (SensorError error = check(setup)) return error;
   errno = 0;
   context_ = iio_create_local_context();
   if (!context_)

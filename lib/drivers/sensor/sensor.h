@@ -30,6 +30,8 @@ struct SensorEdge {
 class Sensor {
  public:
   virtual ~Sensor() = default;
+  // What open() refuses of the settings alone, without a look at any device. open() asks it first.
+  virtual SensorError check(const SensorSetup&) const { return {}; }
   virtual SensorError open(const SensorSetup& setup) = 0;
   // Opening takes no time, and what is opened is a recording.
   virtual bool opens_at_once(const SensorSetup&) const { return false; }

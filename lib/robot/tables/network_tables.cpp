@@ -150,12 +150,17 @@ Properties read_mqtt(const TomlValue& table, Folders folders, bool& list_cameras
   if (!reader.has("host")) reader.complain("host", "[mqtt] needs the \"host\" of the broker");
   reader.properties(kMqtt, properties);
   for (const Property& property : properties)
+    if (property.name == "host" && property.value.empty())
+      reader.complain("host", "\"host\" of [mqtt] is empty: give the broker's name or address");
+  for (const Property& property : properties)
     if (property.name == "topic-prefix" && !publish::is_topic_level(property.value))
       reader.complain("topic-prefix", "\"topic-prefix\" is one level of a topic, without / + #");
   if (std::string path = read_password_path(reader, "username", folders, files); !path.empty())
-    properties.push_back({"password-file", std::move(path)});
+    properties.push_back(
+        {"password-file", std::move(path),
+         reader.line(reader.has("password-file") ? "password-file" : "password-credential")});
   if (std::string path; reader.text("ca-file", path)) {
-    properties.push_back({"ca-file", below(folders.configuration, path)});
+    properties.push_back({"ca-file", below(folders.configuration, path), reader.line("ca-file")});
     files.push_back({reader.line("ca-file"), "ca-file", properties.back().value, false});
   }
   std::vector<std::string> commands;
@@ -171,7 +176,7 @@ Properties read_mqtt(const TomlValue& table, Folders folders, bool& list_cameras
     if (!list.empty()) list += ' ';
     list += command;
   }
-  if (!list.empty()) properties.push_back({"commands", list});
+  if (!list.empty()) properties.push_back({"commands", list, reader.line("commands")});
   reader.finish();
   return properties;
 }
