@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// This project's law as pantiltsink runs it: HeadController before a head behind the line protocol.
+#pragma once
+
+#include <atomic>
+
+#include "closed_loop.h"
+#include "control/head_controller.h"
+#include "line_head.h"
+
+namespace cerberus::bench {
+
+class ProjectLaw final : public FollowingLaw {
+ public:
+  ProjectLaw(const sim::HeadKind& kind, sim::PanHead& machine, const sim::CameraTraits& camera);
+  ~ProjectLaw() override;
+  void on_picture(const Seen& seen, Time now) override;
+  void elapse(Time now) override;
+  double look(Time time) override { return published_.at(time).pan.position; }
+
+ private:
+  template <typename F>
+  void act(F f) {
+    control::DeferredNotifications out(queue_, name_);
+    f(out);
+    out.send([this](const char*, const motion::Pose& pose) { published_.add(pose); },
+             [](const char*, const control::Notice&) {});
+  }
+
+  vision::Lens lens_;
+  Time frame_length_;
+  double pixel_turn_;  // radians: the mean turn of a picture that moves by a pixel
+  LineHead* head_ = nullptr;
+  control::NotificationQueue queue_;
+  std::atomic<const char*> name_{"head"};
+  control::HeadController controller_;
+  motion::PoseHistory published_;
+  Time next_tick_{}, next_serve_{};
+};
+
+}  // namespace cerberus::bench
