@@ -31,7 +31,6 @@ void PanHead::command(const motion::AxisCommand& command, Time now) {
   Coming coming{motion::seconds(now) + traits_.dead_time, command};
   if (traits_.jitter > 0)
     coming.due += std::uniform_real_distribution<>(-traits_.jitter, traits_.jitter)(random_);
-  if (!coming_.empty()) coming.due = std::max(coming.due, coming_.back().due);
   const bool to = command.kind == Kind::position;
   if (to && (traits_.turns_only || !(command.speed > 0))) coming.command = {};
   coming_.push_back(coming);
