@@ -58,8 +58,11 @@ void only_check() {
   checks() = true;
 }
 
-int serve(drivers::HeadDevice& device, const std::string& emergency_stop) {
+int serve(drivers::HeadDevice& turned, const Around& around) {
   if (checks()) return 0;
+  drivers::InvertedHead inverted(turned, around.inverted);
+  drivers::HeadDevice& device = around.inverted.any() ? inverted : turned;
+  const std::string& emergency_stop = around.emergency_stop;
   if (emergency_stop.empty()) return drivers::serve_head(0, 1, device);
 #if HAVE_GPIOD
   const std::size_t sign = emergency_stop.rfind(':');

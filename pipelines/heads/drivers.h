@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "drivers/helper/head_device.h"
+#include "drivers/helper/inverted_head.h"
 #include "drivers/helper/option_words.h"
 
 namespace cerberus::heads {
@@ -20,19 +21,27 @@ void warn(const std::string& text);
 std::string read_number(const drivers::OptionWord& word, double least, double most, double& number);
 std::string read_whole(const drivers::OptionWord& word, int least, int most, int& number);
 
-// Reads the words of a driver: `device` and `emergency-stop` here, all others by read_word(word, options). Returns what
-// is wrong with the first one that cannot be read.
+// What stands between the pipeline and the device.
+struct Around {
+  std::string emergency_stop;    // "CHIP:LINE" of a normally closed contact; empty: there is none
+  drivers::Inverted inverted{};  // axes
+};
+
+// Reads the words of a driver: `device`, `emergency-stop` and `invert` here, all others by read_word(word, options).
+// Returns what is wrong with the first one that cannot be read.
 template <typename Options>
-std::string read_words(const std::vector<drivers::OptionWord>& words, Options& options,
-                       std::string& emergency_stop,
+std::string read_words(const std::vector<drivers::OptionWord>& words, Options& options, Around& around,
                        std::string (*read_word)(const drivers::OptionWord&, Options&)) {
   for (const drivers::OptionWord& word : words) {
-    if (word.key == "device")
+    if (word.key == "device") {
       options.device = word.value;
-    else if (word.key == "emergency-stop")
-      emergency_stop = word.value;
-    else if (std::string wrong = read_word(word, options); !wrong.empty())
+    } else if (word.key == "emergency-stop") {
+      around.emergency_stop = word.value;
+    } else if (word.key == "invert") {
+      if (std::string wrong = parse_inverted(word, around.inverted); !wrong.empty()) return wrong;
+    } else if (std::string wrong = read_word(word, options); !wrong.empty()) {
       return wrong;
+    }
   }
   return {};
 }
@@ -40,8 +49,8 @@ std::string read_words(const std::vector<drivers::OptionWord>& words, Options& o
 // From now on serve() returns at once: the words are read, and no device is opened.
 void only_check();
 
-// Serves the device until the end. emergency_stop: "CHIP:LINE" of a normally closed contact; empty: there is none.
-int serve(drivers::HeadDevice& device, const std::string& emergency_stop);
+// Serves the device until the end.
+int serve(drivers::HeadDevice& device, const Around& around);
 
 // One driver. Returns the process's exit status.
 using Run = int (*)(const std::vector<drivers::OptionWord>& words);

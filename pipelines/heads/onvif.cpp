@@ -27,13 +27,13 @@ constexpr char kOptions[] =
     "device, user, password-file, password-env, password-credential, password-text, profile, fingerprint, "
     "range, "
     "pan-speed, tilt-speed, zoom, answer-time, home-preset, home-time, no-feedback, no-absolute, "
-    "emergency-stop";
+    "emergency-stop, invert";
 
 struct Settings {
   OnvifOptions head;
   SoupClientOptions http;
   SecretSource password;
-  std::string emergency_stop;
+  Around around;
   bool has_device = false, discover = false;
 };
 
@@ -109,12 +109,13 @@ std::string read_word(const OptionWord& word, Settings& s) {
                             : key == "password-credential" ? &s.password.credential
                             : key == "profile"             ? &s.head.login.profile
                             : key == "home-preset"         ? &s.head.login.preset
-                            : key == "emergency-stop"      ? &s.emergency_stop
+                            : key == "emergency-stop"      ? &s.around.emergency_stop
                                                            : nullptr;
   if (text) {
     *text = value;
     return value.empty() ? key + " needs a value" : "";
   }
+  if (key == "invert") return drivers::parse_inverted(word, s.around.inverted);
   if (key == "fingerprint") {
     s.http.fingerprint = normal_fingerprint(value);
     return s.http.fingerprint.empty() ? "fingerprint is a SHA-256 sum of 64 hexadecimal digits" : "";
@@ -151,7 +152,7 @@ int run_onvif(const std::vector<OptionWord>& words) {
   if (const std::string wrong = read_words(words, settings); !wrong.empty()) return fail(wrong);
   settings.head.warn = warn;
   drivers::OnvifHead head(std::make_unique<SoupClient>(std::move(settings.http)), std::move(settings.head));
-  return serve(head, settings.emergency_stop);
+  return serve(head, settings.around);
 }
 
 #else

@@ -21,7 +21,7 @@ std::string read_word(const drivers::OptionWord& word, drivers::PelcoOptions& op
   if (key != "feedback")
     return "\"" + key +
            "\" is no option of pelco-d: device, baud, address, pan-speed, tilt-speed, feedback, home-preset, "
-           "home-time, emergency-stop";
+           "home-time, emergency-stop, invert";
   options.feedback = true;
   return word.has_value ? key + " takes no value" : "";
 }
@@ -30,12 +30,12 @@ std::string read_word(const drivers::OptionWord& word, drivers::PelcoOptions& op
 
 int run_pelco(const std::vector<drivers::OptionWord>& words) {
   drivers::PelcoOptions options;
-  std::string emergency_stop;
-  if (const std::string wrong = read_words(words, options, emergency_stop, read_word); !wrong.empty())
+  Around around;
+  if (const std::string wrong = read_words(words, options, around, read_word); !wrong.empty())
     return fail(wrong);
   if (options.device.empty()) return fail("pelco-d needs a head (device=serial:/dev/ttyUSB0)");
   drivers::PelcoHead head(options);
-  return serve(head, emergency_stop);
+  return serve(head, around);
 }
 #else
 int run_pelco(const std::vector<drivers::OptionWord>&) {

@@ -37,7 +37,7 @@ int run_servo([[maybe_unused]] const std::vector<drivers::OptionWord>& words) {
   }
   if (options.chip.empty()) return fail("servo-pwm needs a PWM chip (device=pwmchip0)");
   drivers::ServoHead head(options);
-  return serve(head, emergency_stop);
+  return serve(head, {.emergency_stop = emergency_stop});
 #else
   return fail("servo-pwm was left out of this build");
 #endif

@@ -54,7 +54,7 @@ int run_stepper([[maybe_unused]] const std::vector<drivers::OptionWord>& words) 
   if (!record.empty() && !steps) return fail("record=" + record + ": " + std::strerror(errno));
   be_punctual();
   drivers::StepperHead head(options, std::make_unique<drivers::GpioPort>(options.chip), steps);
-  const int status = serve(head, emergency_stop);
+  const int status = serve(head, {.emergency_stop = emergency_stop});
   if (steps) std::fclose(steps);
   return status;
 #else

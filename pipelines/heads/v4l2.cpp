@@ -26,7 +26,8 @@ std::string read_word(const drivers::OptionWord& word, drivers::V4l2Options& opt
     if (!number || *number < 0 || *number > 1) return given + "0 to 1 of the zoom's range";
     options.zoom = *number;
   } else {
-    return "\"" + key + "\" is no option of v4l2: device, mode, pan-speed, tilt-speed, zoom, emergency-stop";
+    return "\"" + key +
+           "\" is no option of v4l2: device, mode, pan-speed, tilt-speed, zoom, emergency-stop, invert";
   }
   return {};
 }
@@ -35,12 +36,12 @@ std::string read_word(const drivers::OptionWord& word, drivers::V4l2Options& opt
 
 int run_v4l2(const std::vector<drivers::OptionWord>& words) {
   drivers::V4l2Options options;
-  std::string emergency_stop;
-  if (const std::string wrong = read_words(words, options, emergency_stop, read_word); !wrong.empty())
+  Around around;
+  if (const std::string wrong = read_words(words, options, around, read_word); !wrong.empty())
     return fail(wrong);
   if (options.device.empty()) return fail("v4l2 needs a camera (device=/dev/video0)");
   drivers::V4l2Head head(options, std::make_unique<drivers::V4l2Controls>());
-  return serve(head, emergency_stop);
+  return serve(head, around);
 }
 #else
 int run_v4l2(const std::vector<drivers::OptionWord>&) {

@@ -28,7 +28,7 @@ std::string read_word(const drivers::OptionWord& word, drivers::ViscaOptions& op
   else
     return "\"" + key +
            "\" is no option of visca: device, baud, address, speeds, no-header, no-feedback, zoom, "
-           "emergency-stop";
+           "emergency-stop, invert";
   return word.has_value ? key + " takes no value" : "";
 }
 
@@ -36,13 +36,13 @@ std::string read_word(const drivers::OptionWord& word, drivers::ViscaOptions& op
 
 int run_visca(const std::vector<drivers::OptionWord>& words) {
   drivers::ViscaOptions options;
-  std::string emergency_stop;
-  if (const std::string wrong = read_words(words, options, emergency_stop, read_word); !wrong.empty())
+  Around around;
+  if (const std::string wrong = read_words(words, options, around, read_word); !wrong.empty())
     return fail(wrong);
   if (options.device.empty()) return fail("visca needs a camera (device=serial:/dev/ttyUSB0)");
   options.warn = warn;
   drivers::ViscaHead head(options);
-  return serve(head, emergency_stop);
+  return serve(head, around);
 }
 #else
 int run_visca(const std::vector<drivers::OptionWord>&) {

@@ -100,6 +100,37 @@ def test_one_program_drives_a_head_and_a_killed_one_frees_it():
     assert run(camera, stdin=subprocess.DEVNULL)[1] == ''
 
 
+def messages_of(driver, line, is_one, *words):
+    """What the driver sends to a serial line for a line of the pipeline, until is_one(bytes) holds."""
+    far, near = pty.openpty()
+    device = 'serial:' + os.ttyname(near)
+    sent = b''
+    with subprocess.Popen([HELPER, driver, f'--device={device}', *words],
+                          stdin=subprocess.PIPE, stdout=subprocess.DEVNULL) as helper:
+        helper.stdin.write(b'cerberus-head 1 timeout 5 limits -170 170 -45 45 speed 90 90 acceleration 600 600 '
+                           b'start 0 0\n')
+        end = time.monotonic() + LIMIT
+        while not is_one(sent):
+            assert time.monotonic() < end, f'{driver} {words} sent {sent.hex()}'
+            helper.stdin.write(line)
+            helper.stdin.flush()
+            if select.select([far], [], [], .05)[0]:
+                sent += os.read(far, 4096)
+        helper.kill()
+    os.close(near)
+    os.close(far)
+
+
+def test_each_axis_of_each_driver_can_be_inverted():
+    # To the right and up, by the protocols' own bytes: VISCA 02 right 01 left, 01 up 02 down; Pelco-D 02 right 04 left,
+    # 08 up 10 down.
+    for words, visca, pelco in (([], '0201', '0a'), (['--invert=pan'], '0101', '0c'), (['--invert=tilt'], '0202', '12'),
+                                (['--invert'], '0102', '14')):
+        messages_of('visca', b'move at 19 at 18\n', lambda sent: re.search(
+            bytes.fromhex('81010601') + b'..' + bytes.fromhex(visca + 'ff'), sent, re.DOTALL), '--no-feedback', *words)
+        messages_of('pelco-d', b'move at 19 at 9\n', lambda sent: bytes.fromhex('ff0100' + pelco) in sent, *words)
+
+
 def test_what_cannot_be_is_named():
     for words, text in ((['--limits=a,b,c,d', '--pan=5'], '--limits=a,b,c,d: four numbers of degrees'),
                         (['--limits=10,60,-20,20', '--pan=5'], 'exclude 0'),
@@ -111,6 +142,7 @@ def test_what_cannot_be_is_named():
 
 
 if not HAVE_VISCA:
-    print('skipped: one program drives a head (this build has no driver visca)')
+    print('skipped: one program drives a head, inverted axes (this build has no driver visca)')
     del test_one_program_drives_a_head_and_a_killed_one_frees_it
+    del test_each_axis_of_each_driver_can_be_inverted
 all_tests(globals())

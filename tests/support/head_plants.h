@@ -20,6 +20,7 @@
 #include <string>
 #include <utility>
 
+#include "drivers/helper/inverted_head.h"
 #include "drivers/pelco/pelco_head.h"
 #include "drivers/servo/servo_head.h"
 #include "drivers/stepper/stepper_head.h"
@@ -280,6 +281,21 @@ struct ViscaPlant final : HeadPlant {
   double precision() const override { return 1.5; }
   std::size_t actions() const override { return static_cast<std::size_t>(camera.moves()); }
   bool powered() const override { return camera.speed() != 0; }
+};
+
+// The same device mounted upside down, behind the driver's option `invert`.
+template <typename Plant>
+struct InvertedPlant final : HeadPlant {
+  Plant plant;
+  drivers::InvertedHead head{plant.device(), {.pan = true, .tilt = true}};
+  explicit InvertedPlant(std::chrono::milliseconds dead_time = {}) : plant(dead_time) {}
+  drivers::HeadDevice& device() override { return head; }
+  void elapse(Time now) override { plant.elapse(now); }
+  double pan() const override { return -plant.pan(); }
+  double tilt() const override { return -plant.tilt(); }
+  double precision() const override { return plant.precision(); }
+  std::size_t actions() const override { return plant.actions(); }
+  bool powered() const override { return plant.powered(); }
 };
 
 }  // namespace cerberus::tests
