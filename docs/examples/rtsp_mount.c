@@ -19,7 +19,7 @@
   "videoconvert ! motiondetect ! tee name=t "                                  \
   "t. ! queue ! motionoverlay ! videoconvert ! video/x-raw,format=I420 ! "     \
   "x264enc tune=zerolatency key-int-max=250 ! "                                \
-  "rtph264pay name=pay0 pt=96 config-interval=-1 aggregate-mode=zero-latency " \
+  "rtph264pay name=pay0 pt=96 config-interval=1 aggregate-mode=zero-latency "  \
   "t. ! queue ! onvifmeta ! rtponvifmetapay name=pay1 pt=97"
 
 /* A client begins to play. Without a keyframe it would show nothing until the next one: 10 s at 250 frames a GOP. */

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "publish/streams/payloaders.h"
 #include "rtsp_server/client_connection.h"
 #include "rtsp_server/limited_auth.h"
 
@@ -19,21 +20,6 @@ constexpr int kThreads = 8;  // for all clients: one that waits for a mount's fi
 constexpr guint kCleaningPeriod = 2;   // seconds after which sessions without a client are looked for
 constexpr gulong kEndingPause = 5000;  // microseconds between looks whether connections have ended
 constexpr int kEndingTries = 40;       // looks: .2 s, in which the caller's main loop stands
-
-// What packs a stream into RTP. Parameter sets go along with every keyframe, so that a client that joins has them.
-std::string payloader_of(const GstCaps* caps) {
-  static constexpr std::pair<const char*, const char*> kPayloaders[] = {
-      {"video/x-h264", "rtph264pay config-interval=-1 aggregate-mode=zero-latency"},
-      {"video/x-h265", "rtph265pay config-interval=-1 aggregate-mode=zero-latency"},
-      {"video/x-vp8", "rtpvp8pay"},
-      {"video/x-vp9", "rtpvp9pay"},
-      {"image/jpeg", "rtpjpegpay"},
-      {"application/x-onvif-metadata", "rtponvifmetapay"}};
-  const GstStructure* structure = gst_caps_get_structure(caps, 0);
-  for (const auto& [media, payloader] : kPayloaders)
-    if (gst_structure_has_name(structure, media)) return payloader;
-  return {};
-}
 
 std::string source_name(std::size_t stream) {
   return "cerberus_source_" + std::to_string(stream);
@@ -226,8 +212,8 @@ std::string RtspServer::make_line(const std::vector<std::shared_ptr<EncodedStrea
   for (std::size_t k = 0; k < streams.size(); ++k) {
     g_autoptr(GstCaps) caps = streams[k]->caps();
     if (!caps) return "the stream " + streams[k]->name() + " has not begun";
-    const std::string payloader = payloader_of(caps);
     const std::string kind = gst_structure_get_name(gst_caps_get_structure(caps, 0));
+    const std::string payloader(publish::payloader_of(kind));
     if (payloader.empty())
       return "the stream " + streams[k]->name() + " is " + kind +
              ", which is not sent over RTSP: encode it as H.264, H.265, VP8, VP9 or JPEG";

@@ -209,6 +209,19 @@ def check_launch_file(path):
             complain(path, 'is run by no test')
 
 
+# Parameter sets between the slices of a picture damage it for FFmpeg: payloaders.cpp says which interval puts them before.
+def check_payloaders(path):
+    if path.suffix in SOURCES | {'.md'} and path != TOP / 'tests' / 'generic' / 'house.py':
+        for line in path.read_text('utf-8', errors='replace').splitlines():
+            interval = re.search(r'rtph26[45]pay\b.*config-interval=(-?\d+)', line)
+            if interval and interval[1] != PARAMETER_SETS:
+                complain(path, f'config-interval={interval[1]} of a payloader: it is {PARAMETER_SETS} everywhere')
+
+
+PARAMETER_SETS = re.search(r'rtph264pay config-interval=(\d+)',
+                           (TOP / 'lib' / 'publish' / 'streams' / 'payloaders.cpp').read_text('utf-8'))[1]
+
+
 def check_commands():
     explained = ('pipelines/demo', 'pipelines/encoder', 'pipelines/rtsp', 'pipelines/run', 'pipelines/setup', 'tests/run')
     for command in (*explained, 'docs/generate'):
@@ -270,6 +283,7 @@ for each in files():
     check_messages(each)
     check_installed_header(each)
     check_launch_file(each)
+    check_payloaders(each)
     check_links(each)
     check_named_pages(each)
     check_json(each)

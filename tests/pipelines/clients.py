@@ -1,0 +1,316 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Whether others read what is served and written: ffmpeg and GStreamer read every stream and file, and each picture is
+compared with the one that went into the encoder.
+
+    clients.py files|rtsp|rtp|mjpeg|cerberusd PICTURES [PROGRAM]
+
+PICTURES makes numbered pictures and compares them (pictures.cpp). The clients of a stream watch at the same time. Without
+ffmpeg GStreamer reads alone, and it is said. PROGRAM is cerberus-rtsp or cerberusd.
+"""
+import os
+import pathlib
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+from rtsp_client import Rtsp
+from support import LIMIT, TOP, gst_launch, must, run
+
+WIDTH, HEIGHT, RATE = 320, 240, 50
+SOME, MANY = 150, 900  # pictures of a file, and of a stream that lasts until its clients have what they need
+NEEDED = 100            # pictures that the client of a stream takes
+PICTURES = os.path.abspath(sys.argv[2])
+I420 = 'videoconvert ! video/x-raw,format=I420'
+# By way of RGB, since videoconvert of GStreamer 1.22 keeps the range where the matrix stays; JPEG has the full one.
+LIMITED = f'videoconvert ! video/x-raw,format=BGRx ! {I420},colorimetry=bt601'
+RTP = {'h264': 'rtph264depay wait-for-keyframe=true ! h264parse ! avdec_h264',
+       'h265': 'rtph265depay ! h265parse ! avdec_h265',
+       'vp8': 'rtpvp8depay wait-for-keyframe=true ! vp8dec',
+       'jpeg': f'rtpjpegdepay ! jpegdec ! {LIMITED}'}
+ENOUGH = f'! identity eos-after={NEEDED + 1}'  # a stream that is read by GStreamer ends there
+H264 = ('x264', 1), ('x264', 4), ('openh264', 1), ('openh264', 4)  # encoder, slices a picture
+STARTED = []  # also what is left of a test that failed
+
+
+def start(line):
+    STARTED.append(subprocess.Popen([str(word) for word in line], start_new_session=True, text=True,
+                                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT))
+    return STARTED[-1]
+
+
+def launch_file(name, *options, **variables):
+    return start([TOP / 'pipelines' / 'run', *options, name, *(f'{key}={value}' for key, value in variables.items())])
+
+
+def ended(process):
+    """What it printed. It must end well, by itself and in time."""
+    output, _ = process.communicate(timeout=LIMIT)
+    assert process.returncode == 0, f'{process.args} ended with {process.returncode}:\n{output}'
+    return output
+
+
+def stop(process):
+    """As by Ctrl-C."""
+    os.killpg(process.pid, signal.SIGINT)
+    return ended(process)
+
+
+def pictures(count, paced):
+    """A source of so many numbered pictures, which are also in the file scene.raw."""
+    must(run([PICTURES, 'make', WIDTH, HEIGHT, count, 'scene.raw']))
+    must(gst_launch(f'filesrc location=scene.raw ! rawvideoparse width={WIDTH} height={HEIGHT} format=i420 '
+                    f'framerate={RATE}/1 ! matroskamux ! filesink location=scene.mkv'))
+    return 'filesrc location=scene.mkv ! decodebin' + (' ! clocksync' if paced else '')
+
+
+def draw(elements='motiondetect ! motionoverlay'):
+    """The same pictures with what these elements draw into them, in the file drawn.raw."""
+    must(gst_launch(f'filesrc location=scene.mkv ! decodebin ! videoconvert ! {elements} ! {I420} ! '
+                    'filesink location=drawn.raw'))
+
+
+def encoder(name, slices=1, gop=RATE):
+    """The line of an encoder of pipelines/encoder, with so many slices a picture; and H.265, as cameras send it."""
+    if name == 'x265':
+        return ('x265enc tune=zerolatency speed-preset=ultrafast '
+                f'key-int-max={gop} option-string=slices={slices} ! h265parse')
+    line = must(run([TOP / 'pipelines' / 'encoder', '--line', name, gop, 2000])).strip()
+    return line + {'x264': f' threads={slices} sliced-threads=true',
+                   'openh264': f' slice-mode=n-slices num-slices={slices}'}.get(name, '')
+
+
+class Readers:
+    """Programs that read pictures at the same time."""
+
+    def __init__(self):
+        self.all = []
+
+    def add(self, name, before, least, line):
+        raw = f'reader{len(self.all)}.raw'
+        self.all.append((name, before, raw, least, start([str(word).replace('OUTPUT', raw) for word in line])))
+
+    def ffmpeg(self, name, before, least, *source):
+        if shutil.which('ffmpeg'):
+            self.add(f'{name} by ffmpeg', before, least,
+                     ['ffmpeg', '-nostdin', '-y', '-v', 'error', *source, '-map', '0:v', '-fps_mode', 'passthrough',
+                      '-frames:v', least, '-f', 'rawvideo', '-pix_fmt', 'yuv420p', 'OUTPUT'])
+
+    def gstreamer(self, name, before, least, line, count=''):
+        self.add(f'{name} by GStreamer', before, least,
+                 [sys.executable, TOP / 'tests' / 'pipelines' / 'launch.py',
+                  *f'{line} ! {I420} {count} ! filesink location=OUTPUT'.split()])
+
+    def compare(self):
+        """Judges all of them when they have ended."""
+        wrong = []
+        for name, before, raw, least, process in self.all:
+            said = ended(process)
+            status, report = run([PICTURES, 'compare', WIDTH, HEIGHT, before, raw, least])
+            print(f'{name}: {report.splitlines()[-1]}', flush=True)
+            if status != 0:
+                wrong.append(f'{name}:\n{said}{report}')
+        assert not wrong, '\n'.join(wrong)
+
+
+def watch(readers, address, before, encoding, protocol, by='both'):
+    """An RTSP address is read by both, or by one."""
+    name = f'{address.rsplit("/", 1)[1]}, {encoding} over {protocol}'
+    if by != 'GStreamer':
+        readers.ffmpeg(name, before, NEEDED, '-rtsp_transport', protocol, '-i', address)
+    if by != 'ffmpeg':
+        line = f'rtspsrc location={address} latency=0 protocols={protocol} ! {RTP[encoding]}'
+        readers.gstreamer(name, before, NEEDED, line, ENOUGH)
+
+
+def test_rtsp(program, example=None):
+    source = pictures(MANY, paced=True)
+    draw()
+    for name, slices in (*H264, ('vp8', 1), ('jpeg', 1), ('x265', 4)):
+        if name == 'x265' and run(['gst-inspect-1.0', '--exists', 'x265enc'])[0] != 0:
+            print('x265enc is not installed: H.265 is not tried')
+            continue
+        server = launch_file('rtsp', '--with', program, '--pass', '--port=0', SOURCE=source,
+                             ENCODER=encoder(name, slices, gop=250))
+        addresses = [server.stdout.readline().split()[0] for _ in range(2)]
+        encoding = {'x265': 'h265', 'vp8': 'vp8', 'jpeg': 'jpeg'}.get(name, 'h264')
+        readers = Readers()
+        print(f'{name}, slices: {slices}')
+        if name == 'x265':  # rtph265depay cannot wait for a keyframe: one client each, which begins with one
+            watch(readers, addresses[0], 'scene.raw', encoding, 'tcp', by='ffmpeg')
+            watch(readers, addresses[1], 'drawn.raw', encoding, 'udp', by='GStreamer')
+        for address, before, protocols in zip(addresses, ('scene.raw', 'drawn.raw'), ('tcp udp', 'udp tcp')):
+            for protocol in protocols.split()[:{'x264': 2, 'x265': 0}.get(name, 1)]:
+                watch(readers, address, before, encoding, protocol)
+        readers.compare()
+        stop(server)
+    if example:  # a program in C that mounts the same in its own server
+        server = start([example, '0', source])
+        readers = Readers()
+        watch(readers, server.stdout.readline().strip(), 'drawn.raw', 'h264', 'tcp')
+        readers.compare()
+
+
+def free_port(kind=socket.SOCK_STREAM):
+    with socket.socket(socket.AF_INET, kind) as held:
+        held.bind(('127.0.0.1', 0))
+        return held.getsockname()[1]
+
+
+def wait_until(condition, process):
+    until = time.monotonic() + LIMIT
+    while not condition():
+        assert process.poll() is None, f'it ended:\n{process.communicate()[0]}'
+        assert time.monotonic() < until, 'waited in vain'
+        time.sleep(0.02)
+
+
+def is_served(port, path):
+    try:
+        return Rtsp(port).ask('DESCRIBE', path, 'Accept: application/sdp')[0] == 200
+    except OSError:
+        return False
+
+
+def test_rtp():
+    """Receivers that come while the stream is on its way, and are told no more than that it is H.264."""
+    source = pictures(MANY, paced=True)
+    draw()
+    for name, slices in (('x264', 4), ('openh264', 4)):
+        readers, senders = Readers(), []
+        for reads in ('ffmpeg', 'GStreamer'):
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as early:
+                early.bind(('127.0.0.1', 0))
+                early.settimeout(LIMIT)
+                port = early.getsockname()[1]
+                senders.append(launch_file('rtp-send', SOURCE=source, PORT=port, ENCODER=encoder(name, slices),
+                                           JSON_PORT=free_port(socket.SOCK_DGRAM)))
+                early.recv(65536)  # the first keyframe is gone
+            if reads == 'ffmpeg':
+                pathlib.Path(f'{name}.sdp').write_text(
+                    f'v=0\no=- 0 0 IN IP4 127.0.0.1\ns=-\nc=IN IP4 127.0.0.1\nt=0 0\nm=video {port} RTP/AVP 96\n'
+                    'a=rtpmap:96 H264/90000\n', 'ascii')
+                readers.ffmpeg(name, 'drawn.raw', NEEDED, '-protocol_whitelist', 'file,udp,rtp', '-i', f'{name}.sdp')
+            else:
+                line = (f'udpsrc address=127.0.0.1 port={port} '
+                        'caps=application/x-rtp,media=video,clock-rate=90000,encoding-name=H264 ! rtpjitterbuffer')
+                readers.gstreamer(name, 'drawn.raw', NEEDED, f'{line} ! {RTP["h264"]}', ENOUGH)
+        readers.compare()
+        for sender in senders:
+            stop(sender)
+
+
+def is_open(port):
+    lines = pathlib.Path('/proc/net/tcp').read_text('ascii').splitlines()[1:]
+    return any(line.split()[1].endswith(f':{port:04X}') for line in lines)
+
+
+def test_mjpeg():
+    source = pictures(MANY, paced=True)
+    draw()
+    port = free_port()
+    sender = launch_file('mjpeg', SOURCE=source, PORT=port)
+    wait_until(lambda: is_open(port), sender)
+    readers = Readers()
+    readers.ffmpeg('MJPEG', 'drawn.raw', NEEDED, '-i', f'tcp://127.0.0.1:{port}')
+    line = f'tcpclientsrc port={port} ! multipartdemux ! image/jpeg,framerate={RATE}/1 ! jpegdec'
+    readers.gstreamer('MJPEG', 'drawn.raw', NEEDED, f'{line} ! {LIMITED}', ENOUGH)
+    readers.compare()
+    stop(sender)
+
+
+def read_file(readers, name, path, before, least):
+    readers.ffmpeg(name, before, least, '-i', path)
+    readers.gstreamer(name, before, least, f'filesrc location={path} ! decodebin')
+
+
+def recording(folder):
+    found = [path for path in pathlib.Path(folder).rglob('*.m*') if path.suffix in ('.mp4', '.mkv')]
+    assert found, f'no recording in {folder}'
+    return str(min(found))
+
+
+def test_files():
+    source = pictures(SOME, paced=False)
+    draw()
+    pathlib.Path('pir.csv').write_text('0,0,0,0\n', 'ascii')
+    readers = Readers()
+    ended(launch_file('annotate', SOURCE=source))
+    read_file(readers, 'annotate', 'annotated.mp4', 'drawn.raw', SOME)
+    ended(launch_file('robot', SOURCE=source, SENSORS='pirsrc driver=replay location=pir.csv is-live=true',
+                      FILE='robot.mkv', JSON=os.devnull, PORT=9, ENCODER=encoder('x264', 4)))
+    read_file(readers, 'robot', 'robot.mkv', 'scene.raw', SOME)
+    for name, slices in H264:
+        title = f'{name}-{slices}'
+        os.mkdir(title)
+        ended(launch_file('record', SOURCE=source, FOLDER=title, JSON=os.devnull, ENCODER=encoder(name, slices)))
+        read_file(readers, f'record, {title}', recording(title), 'scene.raw', SOME)
+    os.mkdir('web')
+    ended(launch_file('hls', SOURCE=f'{source} ! clocksync', FOLDER='web', SECONDS=1, KEEP=0,
+                      ENCODER=encoder('x264', 4)))
+    readers.ffmpeg('hls', 'drawn.raw', SOME, '-i', 'web/live.m3u8')
+    playlist = pathlib.Path('web/live.m3u8').read_text('ascii').split()
+    parts = [pathlib.Path('web', line).read_bytes() for line in playlist if line.endswith('.ts')]
+    pathlib.Path('whole.ts').write_bytes(b''.join(parts))
+    readers.gstreamer('hls', 'drawn.raw', SOME, 'filesrc location=whole.ts ! decodebin')
+    readers.compare()
+
+
+ROBOT = """
+state-folder = "state"
+[page]
+enabled = false
+[rtsp]
+port = PORT
+encoder = "SHOWN"
+[[camera]]
+name = "yard"
+kind = "file"
+file = "scene.mkv"
+[camera.recorder]
+folder = "FOLDER"
+encoder = "RECORDED"
+"""
+
+
+def test_cerberusd(program):
+    """Its streams: the plain one is what its recorder writes."""
+    pictures(MANY, paced=True)
+    draw('motiondetect ! pirfusion ! motionoverlay crosshair=true')
+    for recorded, shown in (('x264enc', 'openh264enc'), ('openh264enc', 'x264enc'), ('jpegenc', 'vp8enc')):
+        port, folder, encodings = free_port(), recorded, {'vp8enc': 'vp8', 'jpegenc': 'jpeg'}
+        text = ROBOT.replace('PORT', str(port)).replace('FOLDER', folder)
+        pathlib.Path('robot.toml').write_text(text.replace('RECORDED', recorded).replace('SHOWN', shown), 'ascii')
+        server = start([program, 'robot.toml'])
+        wait_until(lambda: is_served(port, '/yard/annotated'), server)
+        readers = Readers()
+        watch(readers, f'rtsp://127.0.0.1:{port}/yard/plain', 'scene.raw', encodings.get(recorded, 'h264'), 'tcp')
+        watch(readers, f'rtsp://127.0.0.1:{port}/yard/annotated', 'drawn.raw', encodings.get(shown, 'h264'), 'udp')
+        readers.compare()
+        os.killpg(server.pid, signal.SIGTERM)
+        ended(server)
+        readers = Readers()
+        read_file(readers, f'recording, {recorded}', recording(folder), 'scene.raw', NEEDED)
+        readers.compare()
+
+
+def main():
+    what, program = sys.argv[1], [os.path.abspath(name) for name in sys.argv[3:]]
+    if not shutil.which('ffmpeg'):
+        print('ffmpeg is not installed: only GStreamer reads')
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        try:
+            globals()['test_' + what](*program)
+        finally:
+            os.chdir('/')
+            for process in STARTED:
+                if process.poll() is None:
+                    os.killpg(process.pid, signal.SIGKILL)
+
+
+main()
