@@ -27,6 +27,7 @@ void Detector::set_parameters(const DetectorParameters& parameters) {
 }
 
 void Detector::reset() {
+  stretch_.reset();
   duplicates_.forget();
   camera_.reset();
   if (differences_) differences_->reset();
@@ -48,11 +49,12 @@ Record Detector::blank(Size frame) {
   return record;
 }
 
-Record Detector::begin(const LumaSource& picture) {
+Record Detector::begin(const LumaSource& picture, bool fresh) {
+  if (fresh) stretch_.reset();
   const Size frame{picture.width, picture.height};
   Record record = blank(frame);
   GrayPicture luma = gray(vision::analysis_size(frame, options_.analysis_width));
-  scaler_.scale(picture, luma->view());
+  scaler_.scale(stretch_.stretched(picture), luma->view());
   record->luma.write() = std::move(luma);
   return record;
 }

@@ -14,6 +14,7 @@
 #include "vision/geometry/box_edge.h"
 #include "vision/geometry/lens.h"
 #include "vision/image/luma.h"
+#include "vision/image/luma_stretch.h"
 #include "vision/zones/zones.h"
 
 namespace cerberus::vision {
@@ -83,7 +84,7 @@ class Detector {
   // A record of a frame of this size, without any field; with the luma of `picture`; with the fields of `record` before
   // `end`, sharing its pictures.
   Record blank(Size frame);
-  Record begin(const LumaSource& picture);
+  Record begin(const LumaSource& picture, bool fresh = false);
   Record copy(const Analysis& record, Stage end);
 
   // Whether `record`, made by begin(), shows the picture of the last one again, so that no stage is to see it; asked
@@ -127,6 +128,7 @@ class Detector {
   GrayPicture gray(Size size);
 
   DetectorOptions options_;
+  LumaStretch stretch_;
   LumaScaler scaler_;
   DuplicateFrames duplicates_;
   CameraMotion camera_;

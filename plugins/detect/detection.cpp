@@ -128,7 +128,7 @@ vision::Record Detection::obtain(const Frame& frame, bool regions_known) {
   if (record) return record.is_sole() && !record->has(last_) ? record : detector.copy(*record, last_);
   if (regions_known) return detector.blank(frame.size);
   const VideoFrame mapped(*frame.info, frame.buffer, GST_MAP_READ);
-  return mapped ? detector.begin(luma_source(*mapped.get())) : record;
+  return mapped ? detector.begin(luma_source(*mapped.get()), frame.fresh) : record;
 }
 
 Analyser::Outcome Detection::analyse(Frame& frame) {

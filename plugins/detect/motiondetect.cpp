@@ -22,6 +22,10 @@
  * the flag, for at most half a second. Where
  * nothing differs for longer, or from the start, the scene is still and is analysed.
  *
+ * Formats of 10 to 16 bits whose pictures use less than a quarter of their range, as those of thermal cameras (GRAY16) do,
+ * are stretched for the analysis: what occurs fills two thirds of 8 bits, 1/64 of the range at the least. The stretch stays
+ * while it fits, and follows slowly.
+ *
  * Pads: one sink, one src, raw progressive video in system memory, 32x32 to 8192x8192.
  *
  * ## Example

@@ -120,6 +120,7 @@ struct State {  // streaming thread only
   guint warned = 0;     // one bit a stage
   Complaint complaint;  // about the caps
   vision::Record last;  // of the last frame
+  vision::LumaStretch stretch;
   vision::LumaScaler scaler;
   vision::Image<std::uint8_t> luma;
   overlay::Enlarger enlarger;
@@ -196,7 +197,7 @@ bool show_own_luma(State& state, GstBuffer* in, const overlay::Canvas& canvas) {
   const vision::LumaSource source = cerberus::luma_source(*frame.get());
   state.luma.resize(
       vision::analysis_size({source.width, source.height}, vision::DetectorOptions{}.analysis_width));
-  state.scaler.scale(source, state.luma.view());
+  state.scaler.scale(state.stretch.stretched(source), state.luma.view());
   state.enlarger.show(state.luma.view(), 1, canvas);
   return true;
 }

@@ -81,6 +81,7 @@
 #include "shared/complaint.hpp"
 #include "shared/properties.hpp"
 #include "shared/video.hpp"
+#include "vision/image/luma_stretch.h"
 #include "vision/verification/look_worker.h"
 #include "vision/verification/person_verifier.h"
 
@@ -163,6 +164,7 @@ struct Pending {
 struct State {  // streaming thread only
   GstVideoInfo info;
   vision::Size reduced;
+  vision::LumaStretch stretch;
   vision::LumaScaler scaler, crop_scaler;
   vision::Image<std::uint8_t> picture;
   vision::PersonVerifier verifier;
@@ -190,6 +192,7 @@ void forget(State& state) {
   if (state.pending) state.worker.wait();
   state.pending.reset();
   state.verifier.reset();
+  state.stretch.reset();
   state.last = state.next_look = GST_CLOCK_TIME_NONE;
 }
 
@@ -382,7 +385,7 @@ GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, G
     state.last = now;
 
     const vision::Size size{GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)};
-    const vision::LumaSource source = cerberus::luma_source(*frame.get());
+    const vision::LumaSource source = state.stretch.stretched(cerberus::luma_source(*frame.get()));
     state.scaler.scale(source, state.picture.view());
     vision::Transform motion;
     if (const CerberusCameraMotion* camera = cerberus_buffer_peek_camera_motion(buffer))

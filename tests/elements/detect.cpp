@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "scene.h"
 #include "support.h"
@@ -54,6 +55,65 @@ GST_START_TEST(the_motion_is_in_frame_pixels_whatever_the_analysis_width) {
       if (k > 0) fail_unless(std::abs(motion->matrix[2] + 6) < 0.4, "%.2f", motion->matrix[2]);
     });
   }
+}
+GST_END_TEST
+
+namespace {
+
+// Grey levels as 4 % of the range of a deep format, from a third of it on. offset: of the range too.
+GstBuffer* faint(const char* format, const World& world, int k, double offset) {
+  GstVideoInfo info;
+  gst_video_info_set_format(&info, gst_video_format_from_string(format), world.width, world.height);
+  GstBuffer* out = gst_buffer_new_allocate(nullptr, info.size, nullptr);
+  gst_buffer_memset(out, 0, 0, info.size);
+  const std::vector<std::uint8_t> grey = world.picture(k);
+  GstVideoFrame frame;
+  fail_unless(gst_video_frame_map(&frame, &info, out, GST_MAP_WRITE));
+  const double range = 1 << GST_VIDEO_INFO_COMP_DEPTH(&info, 0);
+  for (int y = 0; y < world.height; ++y)
+    for (int x = 0; x < world.width; ++x) {
+      const double level = grey[static_cast<std::size_t>(y) * static_cast<std::size_t>(world.width) +
+                                static_cast<std::size_t>(x)];
+      const auto word = static_cast<guint16>(static_cast<int>((0.33 + offset + 0.04 * level / 255) * range)
+                                             << GST_VIDEO_FORMAT_INFO_SHIFT(info.finfo, 0));
+      guint8* p = static_cast<guint8*>(GST_VIDEO_FRAME_COMP_DATA(&frame, 0)) +
+                  static_cast<gssize>(y) * GST_VIDEO_FRAME_COMP_STRIDE(&frame, 0) + 2 * x;
+      if (GST_VIDEO_FORMAT_INFO_IS_LE(info.finfo))
+        GST_WRITE_UINT16_LE(p, word);
+      else
+        GST_WRITE_UINT16_BE(p, word);
+    }
+  gst_video_frame_unmap(&frame);
+  GST_BUFFER_PTS(out) = static_cast<GstClockTime>(k) * scene::kStep;
+  GST_BUFFER_DURATION(out) = scene::kStep;
+  return out;
+}
+
+}  // namespace
+
+// A thermal camera of 16 bits uses a few percent of them; its shutter closes, and all values are others.
+GST_START_TEST(somebody_in_a_few_percent_of_a_deep_formats_range_is_found) {
+  static const char* const formats[] = {"GRAY16_LE", "GRAY16_BE", "P010_10LE", "I420_10LE", "Y444_12BE"};
+  const char* format = formats[__i__];
+  const World world = entering();
+  Line line("motiondetect", scene::caps(format, world.width, world.height));
+  int found = 0, others = 0;
+  std::set<guint> identities;
+  for (int k = 0; k < 100; ++k) {
+    GstBuffer* out = line.through(faint(format, world, k, k < 60 ? 0 : 0.002));
+    const Regions regions(out);
+    bool here = false;
+    for (guint i = 0; i < regions.size(); ++i) {
+      const bool figure = scene::overlaps_figure(regions[i], world, k);
+      here = here || figure, others += !figure;
+      if (figure) identities.insert(regions[i].id);
+    }
+    found += here && k >= 20;
+    gst_buffer_unref(out);
+  }
+  fail_unless(found >= 76, "%s: found in %d of 80 frames", format, found);
+  fail_unless(identities.size() == 1 && others <= 2, "%s: %d identities, %d others", format,
+              static_cast<int>(identities.size()), others);
 }
 GST_END_TEST
 
@@ -464,6 +524,7 @@ Suite* detect_suite() {
   tcase_add_checked_fixture(tests, watch_library_log, nullptr);
   tcase_add_test(tests, a_turning_camera_is_measured_and_the_figure_found);
   tcase_add_test(tests, the_motion_is_in_frame_pixels_whatever_the_analysis_width);
+  tcase_add_loop_test(tests, somebody_in_a_few_percent_of_a_deep_formats_range_is_found, 0, 5);
   tcase_add_test(tests, model_none_says_that_the_camera_stands);
   tcase_add_loop_test(tests, the_area_changes_while_playing, 0, 2);
   tcase_add_test(tests, the_analysis_width_changes_while_playing);

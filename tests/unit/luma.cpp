@@ -23,6 +23,7 @@ struct Layout {
   int r, g, b;
   int word_shift = 0;
   bool swapped = false;
+  int low = 0, span = 0;
 };
 constexpr Layout kLayouts[] = {{"planar", 1, 0, false, 0, 0, 0},
                                {"YUY2", 2, 0, false, 0, 0, 0},
@@ -35,7 +36,11 @@ constexpr Layout kLayouts[] = {{"planar", 1, 0, false, 0, 0, 0},
                                {"P010", 2, 0, false, 0, 0, 0, 8},
                                {"P010 swapped", 2, 0, false, 0, 0, 0, 8, true},
                                {"10 bits", 2, 0, false, 0, 0, 0, 2},
-                               {"12 bits swapped", 2, 0, false, 0, 0, 0, 4, true}};
+                               {"12 bits swapped", 2, 0, false, 0, 0, 0, 4, true},
+                               {"thermal", 2, 0, false, 0, 0, 0, 8, false, 28000, 3000},
+                               {"thermal swapped", 2, 0, false, 0, 0, 0, 8, true, 0, 60000},
+                               {"part of 10 bits", 2, 0, false, 0, 0, 0, 2, false, 300, 16},
+                               {"the end of the range", 2, 0, false, 0, 0, 0, 8, false, 65000, 535}};
 
 // Bytes from the first luma sample to the end of the frame, where the frame's last row has no padding.
 std::size_t frame_bytes(const Layout& l, Size size, std::ptrdiff_t stride) {
@@ -70,7 +75,9 @@ int worst_error(const Layout& l, Size from, Size to, int padding) {
                           l.g,
                           l.b,
                           l.word_shift,
-                          l.swapped};
+                          l.swapped,
+                          l.low,
+                          l.span};
   const GuardedPicture fast(to, 5);
   Image<std::uint8_t> exact(to);
   LumaScaler().scale(source, fast.view());
@@ -122,6 +129,18 @@ START_TEST(luma_of_words_is_their_upper_eight_bits_in_either_byte_order) {
     ck_assert_int_eq(from_low[x], expected[x]);
     ck_assert_int_eq(from_high[x], expected[x]);
   }
+}
+END_TEST
+
+// 256 (word - low) / span: from 1000 on, 512 to 256 levels.
+START_TEST(luma_between_two_values_fills_the_range_of_eight_bits) {
+  const std::uint16_t words[] = {0, 1000, 1001, 1002, 1256, 1511, 1512, 65535};
+  const int expected[] = {0, 0, 0, 1, 128, 255, 255, 255};
+  std::uint8_t luma[8];
+  LumaSource source{reinterpret_cast<const std::uint8_t*>(words), 8, 1, 16, 2};
+  source.word_shift = 8, source.low = 1000, source.span = 512;
+  LumaScaler().scale(source, {luma, 8, 1, 8});
+  for (int x = 0; x < 8; ++x) ck_assert_int_eq(luma[x], expected[x]);
 }
 END_TEST
 
@@ -235,6 +254,7 @@ int main() {
       "luma", {the_analysis_size_keeps_the_aspect_and_never_grows,
                what_is_analysed_has_at_most_3840_by_2160_pixels_and_3840_to_a_side,
                luma_of_words_is_their_upper_eight_bits_in_either_byte_order,
+               luma_between_two_values_fills_the_range_of_eight_bits,
                the_largest_frame_is_reduced_without_an_overflow,
                the_reference_is_the_area_average_computed_by_hand, luma_of_rgb_has_the_weights_of_bt_601,
                every_layout_is_within_one_level_of_the_reference_and_inside_its_memory,

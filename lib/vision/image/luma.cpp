@@ -41,19 +41,22 @@ int end_source(int j, int source, int target) {
 }
 
 // Luma of one word of 16 bits.
-std::uint8_t word_luma(const std::uint8_t* bytes, const LumaSource& s) {
+std::uint8_t word_luma(const std::uint8_t* bytes, const LumaSource& s, const WordStretch& stretch) {
   std::uint16_t word;
   std::memcpy(&word, bytes, sizeof word);
   if (s.swapped) word = static_cast<std::uint16_t>(word << 8 | word >> 8);
-  return static_cast<std::uint8_t>(std::min(255, word >> s.word_shift));
+  if (stretch.span == 0) return static_cast<std::uint8_t>(std::min(255, word >> s.word_shift));
+  const auto above = static_cast<std::uint32_t>(std::clamp(word - s.low, 0, s.span)) << stretch.shift;
+  return static_cast<std::uint8_t>(std::min(255U, above * stretch.factor >> 16));
 }
 
 void copy(const LumaSource& s, MutableGrayView target) {
+  const WordStretch stretch = stretch_of(s.low, s.span);
   for (int y = 0; y < target.height; ++y) {
     const std::uint8_t* in = s.data + y * s.stride;
     std::uint8_t* out = target.row(y);
     if (s.word_shift > 0) {
-      for (int x = 0; x < s.width; ++x, in += s.pixel_stride) out[x] = word_luma(in, s);
+      for (int x = 0; x < s.width; ++x, in += s.pixel_stride) out[x] = word_luma(in, s, stretch);
     } else if (!s.rgb && s.pixel_stride == 1) {
       std::memcpy(out, in, static_cast<std::size_t>(s.width));
     } else if (!s.rgb) {
@@ -163,9 +166,10 @@ void LumaScaler::scale(const LumaSource& source, MutableGrayView target) {
   prepare(source, target.size());
   for (int y = 0; y < target.height; ++y) {
     const Rows& r = rows_.view().at(y, 0);
-    average_rows({source.data + r.first * source.stride, source.stride, r.count, shift_, r.first_weight,
-                  r.last_weight, r.reciprocal, source.word_shift, source.swapped},
-                 used_, column_sums_.view().data);
+    average_rows(
+        {source.data + r.first * source.stride, source.stride, r.count, shift_, r.first_weight, r.last_weight,
+         r.reciprocal, source.word_shift, source.swapped, stretch_of(source.low, source.span)},
+        used_, column_sums_.view().data);
     average_columns(column_sums_.view().data, first_.view().data, weights_.view().data, blocks_, target.width,
                     target.row(y));
   }
@@ -173,6 +177,7 @@ void LumaScaler::scale(const LumaSource& source, MutableGrayView target) {
 
 void scale_luma_reference(const LumaSource& source, MutableGrayView target) {
   const PixelWeights pixel = pixel_weights(source);
+  const WordStretch stretch = stretch_of(source.low, source.span);
   const std::int64_t whole = std::int64_t{256} * source.width * source.height;
   for (int y = 0; y < target.height; ++y)
     for (int x = 0; x < target.width; ++x) {
@@ -185,7 +190,7 @@ void scale_luma_reference(const LumaSource& source, MutableGrayView target) {
           const std::int64_t area =
               overlap(v, y, source.height, target.height) * overlap(u, x, source.width, target.width);
           if (source.word_shift > 0)
-            total += area * 256 * word_luma(p, source);
+            total += area * 256 * word_luma(p, source, stretch);
           else
             for (const ByteWeight& w : pixel) total += area * w.weight * p[w.offset];
         }

@@ -13,7 +13,8 @@ namespace cerberus::vision {
 // Describes where a frame holds its luma. One of three layouts: one luma sample every `pixel_stride` bytes (planar 1,
 // YUY2 and UYVY 2); packed RGB of 3 or 4 bytes a pixel, whose luma is computed as (77 R + 150 G + 29 B) / 256, the
 // BT.601 weights; one luma sample in every word of 16 bits, of which the upper 8 significant bits are used (P010,
-// I420_10LE and similar). The truncation is below one grey level and equal in every frame.
+// I420_10LE and similar), or the place between two values (LumaStretch). The truncation is below one grey level and equal in
+// every frame.
 struct LumaSource {
   const std::uint8_t* data = nullptr;  // first luma sample, or first byte of the first RGB pixel
   int width = 0;                       // pixels
@@ -24,6 +25,8 @@ struct LumaSource {
   int r = 0, g = 0, b = 0;  // byte offsets inside an RGB pixel
   int word_shift = 0;       // > 0: words of 16 bits, luma = min(255, word >> word_shift); pixel_stride is 2
   bool swapped = false;     // those words have the other byte order than this machine
+  // span > 0: luma = 256 (word - low) / span instead, within 0 to 255; low and low + span are at most 65535.
+  int low = 0, span = 0;
 };
 
 // The largest analysed picture: 32-bit counters and 16-bit coordinates do not overflow up to this size.

@@ -48,7 +48,11 @@ struct LoadWords {
     auto word = hn::LoadU(d, reinterpret_cast<const std::uint16_t*>(p));
 #endif
     if (t.swapped) word = hn::Or(hn::ShiftLeft<8>(word), hn::ShiftRight<8>(word));
-    return hn::Min(hn::ShiftRightSame(word, t.word_shift), hn::Set(d, 255));
+    const auto white = hn::Set(d, 255);
+    if (t.stretch.span == 0) return hn::Min(hn::ShiftRightSame(word, t.word_shift), white);
+    const auto above = hn::Min(hn::SaturatedSub(word, hn::Set(d, t.stretch.low)), hn::Set(d, t.stretch.span));
+    return hn::Min(hn::MulHigh(hn::ShiftLeftSame(above, t.stretch.shift), hn::Set(d, t.stretch.factor)),
+                   white);
   }
 };
 

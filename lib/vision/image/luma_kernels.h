@@ -7,8 +7,24 @@
 
 namespace cerberus::vision {
 
+// Luma of words between two values: min(255, (min(saturated word - low, span) << shift) factor >> 16). span 0: not so.
+struct WordStretch {
+  std::uint16_t low = 0, span = 0, factor = 0;
+  int shift = 0;
+};
+// factor / 65536 = 256 / (span << shift), rounded down, where span << shift has 16 bits: at most one level too dark.
+inline WordStretch stretch_of(int low, int span) {
+  if (span <= 0) return {};
+  int shift = 0;
+  while (span << (shift + 1) <= 65535) ++shift;
+  const int factor = (256 << 16) / (span << shift);
+  return {static_cast<std::uint16_t>(low), static_cast<std::uint16_t>(span),
+          static_cast<std::uint16_t>(factor), shift};
+}
+
 // Vertical averages of `count` rows of `width` bytes, or (word_shift > 0) of `width` words of 16 bits, each of which
-// stands for min(255, word >> word_shift), its bytes swapped first where the words have the other byte order:
+// stands for min(255, word >> word_shift), or as `stretch` says, its bytes swapped first where the words have the other byte
+// order:
 // out[x] = (first_weight * row[0][x] + ((row[1][x] + ... + row[count-2][x]) << shift) + last_weight *
 // row[count-1][x])
 //          * reciprocal >> 16.
@@ -22,6 +38,7 @@ struct RowAverage {
   std::uint16_t first_weight, last_weight, reciprocal;
   int word_shift = 0;
   bool swapped = false;
+  WordStretch stretch;
 };
 void average_rows(const RowAverage& task, int width, std::uint16_t* out);
 
