@@ -2,7 +2,7 @@
 // The driver visca.
 #include "drivers/visca/visca_head.h"
 
-#include <cstdio>
+#include <limits>
 
 #include "heads/drivers.h"
 
@@ -21,13 +21,19 @@ std::string read_word(const drivers::OptionWord& word, drivers::ViscaOptions& op
   if (key == "address") return read_whole(word, 1, 7, options.address);
   if (key == "zoom") return read_number(word, 0, 1000, options.zoom);  // the head knows its lens
   if (key == "speeds") return read_speeds(word, options.speeds);
+  if (key == "sequence") {
+    int number = 0;
+    const std::string wrong = read_whole(word, 0, std::numeric_limits<int>::max(), number);
+    options.sequence = static_cast<std::uint32_t>(number);
+    return wrong;
+  }
   if (key == "no-header")
     options.header = false;
   else if (key == "no-feedback")
     options.feedback = false;
   else
     return "\"" + key +
-           "\" is no option of visca: device, baud, address, speeds, no-header, no-feedback, zoom, "
+           "\" is no option of visca: device, baud, address, speeds, no-header, sequence, no-feedback, zoom, "
            "emergency-stop, invert";
   return word.has_value ? key + " takes no value" : "";
 }
@@ -40,6 +46,10 @@ int run_visca(const std::vector<drivers::OptionWord>& words) {
   if (const std::string wrong = read_words(words, options, around, read_word); !wrong.empty())
     return fail(wrong);
   if (options.device.empty()) return fail("visca needs a camera (device=serial:/dev/ttyUSB0)");
+  if (options.sequence && (!options.header || !options.device.starts_with("udp:")))
+    return fail(
+        "sequence= is the number in the header of VISCA over IP: it is for device=udp:HOST:PORT, and not "
+        "beside no-header");
   options.warn = warn;
   drivers::ViscaHead head(options);
   return serve(head, around);

@@ -15,6 +15,7 @@
 #include <deque>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -262,12 +263,16 @@ struct ViscaPlant final : HeadPlant {
   explicit ViscaPlant(std::chrono::milliseconds dead_time = {})
       : ViscaPlant(ViscaFaults{.reports = false, .dead_time = dead_time}) {}
   // Without position inquiries: the driver would wait for the first answer in real time.
-  explicit ViscaPlant(const ViscaFaults& faults, bool feedback = false)
+  explicit ViscaPlant(const ViscaFaults& faults, bool feedback = false,
+                      std::optional<std::uint32_t> sequence = {},
+                      std::function<void(const std::string&)> warn = {})
       : camera(ViscaCamera::Line::udp, faults, &time) {
     drivers::ViscaOptions options;
     options.device = camera.device();
     options.header = faults.header;
     options.feedback = feedback;
+    options.sequence = sequence;
+    options.warn = std::move(warn);
     head.emplace(options);
   }
   drivers::HeadDevice& device() override { return *head; }

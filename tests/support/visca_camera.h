@@ -30,17 +30,20 @@ namespace cerberus::tests {
 
 struct ViscaFaults {
   bool acknowledges = true;
-  bool reports = true;     // answers position inquiries
-  bool versions = false;   // answers the inquiry of its version
-  bool zooms = false;      // has a zoom; without one it refuses its commands, as Sony's cameras do
-  bool header = true;      // expects the header of VISCA over IP, over UDP
-  int refuses = 0;         // as many moves are answered by "buffer full"
-  int loses_answers = 0;   // as many acknowledgements are lost
-  int swallows_moves = 0;  // likewise of moves
-  int swallows_stops = 0;  // as many stops are neither obeyed nor answered
-  int address = 1;         // on a serial line
-  bool garbles = false;    // its answers arrive as at another baud rate
-  bool strict = false;     // refuses a sequence number that is not the next one, as Sony's cameras do
+  bool reports = true;        // answers position inquiries
+  bool versions = false;      // answers the inquiry of its version
+  bool zooms = false;         // has a zoom; without one it refuses its commands, as Sony's cameras do
+  bool header = true;         // expects the header of VISCA over IP, over UDP
+  int refuses = 0;            // as many moves are answered by "buffer full"
+  int loses_answers = 0;      // as many acknowledgements are lost
+  int swallows_moves = 0;     // likewise of moves
+  int swallows_stops = 0;     // as many stops are neither obeyed nor answered
+  int address = 1;            // on a serial line
+  bool garbles = false;       // its answers arrive as at another baud rate
+  bool strict = false;        // refuses a sequence number that is not the next one, as Sony's cameras do
+  int most_number = -1;       // refuses a higher one; -1: none
+  int answers_number = -1;    // answers with this one, whatever it was asked with; -1: with the same
+  bool bare_answers = false;  // without a header
   std::chrono::milliseconds delay{0};      // of each answer
   std::chrono::milliseconds dead_time{0};  // from a move or stop until the camera turns so
 };
@@ -200,7 +203,8 @@ class ViscaCamera {
       std::memcpy(header_, piece, 8);
       const std::uint32_t number =
           static_cast<std::uint32_t>(piece[4]) << 24 | piece[5] << 16 | piece[6] << 8 | piece[7];
-      if (faults_.strict && number != next_) {
+      if ((faults_.strict && number != next_) ||
+          (faults_.most_number >= 0 && number > static_cast<std::uint32_t>(faults_.most_number))) {
         const std::uint8_t error[10] = {0x02, 0x01, 0, 2, piece[4], piece[5], piece[6], piece[7], 0x0f, 0x01};
         ::sendto(fd_, error, sizeof error, 0, reinterpret_cast<sockaddr*>(&peer_), peer_size_);
         return true;
@@ -220,7 +224,11 @@ class ViscaCamera {
     message[0] = static_cast<std::uint8_t>(0x80 | faults_.address << 4);
     if (faults_.garbles) message.assign(message.size(), 0x1c);
     if (!time_) std::this_thread::sleep_for(faults_.delay);
-    if (line_ == Line::udp && faults_.header) {
+    if (line_ == Line::udp && faults_.header && faults_.answers_number >= 0) {
+      std::fill(header_ + 4, header_ + 7, std::uint8_t{0});
+      header_[7] = static_cast<std::uint8_t>(faults_.answers_number);
+    }
+    if (line_ == Line::udp && faults_.header && !faults_.bare_answers) {
       const std::uint8_t head[8] = {
           1,          0x11,       0,          static_cast<std::uint8_t>(message.size()),
           header_[4], header_[5], header_[6], header_[7]};

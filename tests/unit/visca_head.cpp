@@ -256,6 +256,46 @@ START_TEST(a_camera_that_counts_is_driven_after_its_reset_was_lost) {
 }
 END_TEST
 
+constexpr ViscaFaults kCountsNot[] = {
+    {.most_number = 3}, {.answers_number = 1}, {.answers_number = 200}, {.bare_answers = true}};
+
+START_TEST(cameras_that_do_not_count_are_driven_by_a_fixed_number) {
+  for (const ViscaFaults& faults : kCountsNot) {
+    std::string warning;
+    ViscaPlant plant(faults, false, 0U, [&](const std::string& text) { warning = text; });
+    SteppedHelper served(plant);
+    for (int round = 0; round < 5; ++round) {
+      ck_assert(served.until([&] { return plant.camera.speed() == 45; }, "move at 45 hold"));
+      served.say("stop");
+      served.run(200ms);
+      ck_assert_double_eq(plant.camera.speed(), 0);
+      ck_assert(!plant.device().stopping());  // acknowledged: not sent again and again
+    }
+    assert_text(plant.device().fault(), "");
+    assert_text(warning, "");
+  }
+}
+END_TEST
+
+START_TEST(a_camera_that_does_not_count_is_stopped_and_the_user_told_of_the_fixed_number) {
+  for (const ViscaFaults& faults : kCountsNot) {
+    int warnings = 0;
+    ViscaPlant plant(faults, false, std::nullopt, [&](const std::string& text) {
+      ck_assert_msg(text.ends_with("give sequence=0"), "%s", text.c_str());
+      ++warnings;
+    });
+    SteppedHelper served(plant);
+    for (int round = 0; round < 20; ++round) {
+      ck_assert(served.until([&] { return plant.camera.speed() == 45; }, "move at 45 hold"));
+      served.say("stop");
+      ck_assert(served.until([&] { return plant.camera.speed() == 0; }));
+      served.run(300ms);
+    }
+    ck_assert_int_eq(warnings, faults.bare_answers ? 0 : 1);
+  }
+}
+END_TEST
+
 // 19 degrees a second is a step of the camera; 20 is none. The age is of the line, far below a second.
 START_TEST(a_camera_without_positions_reports_the_speeds_of_its_steps) {
   ViscaFaults faults;
@@ -525,6 +565,8 @@ int main() {
         a_camera_that_goes_away_is_reported_and_used_again_at_rest,
         the_answer_to_a_move_is_not_taken_for_that_to_the_stop,
         a_camera_that_counts_is_driven_after_its_reset_was_lost,
+        cameras_that_do_not_count_are_driven_by_a_fixed_number,
+        a_camera_that_does_not_count_is_stopped_and_the_user_told_of_the_fixed_number,
         a_camera_without_positions_reports_the_speeds_of_its_steps,
         a_camera_without_positions_is_stopped_a_little_beyond_its_limits,
         a_camera_without_positions_is_reckoned_to_turn_on_while_its_stops_are_lost,

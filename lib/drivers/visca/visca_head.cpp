@@ -57,7 +57,8 @@ void ViscaHead::on_connected(Time now) {
   versions_asked_ = 0;
   last_pose_.reset();
   homing_.reset();
-  if (numbered()) {
+  strange_numbers_ = 0;
+  if (has_header()) {
     reset_sequence();
   } else if (!stream_.datagrams() && options_.device.starts_with("serial:")) {
     send(visca::address_set());
@@ -108,8 +109,8 @@ HeadAbilities ViscaHead::abilities() const {
 }
 
 void ViscaHead::send(const visca::Message& message) {
-  if (numbered())
-    stream_.write(visca::with_header(message, sequence_++));
+  if (has_header())
+    stream_.write(visca::with_header(message, options_.sequence.value_or(sequence_++)));
   else
     stream_.write(message);
 }
@@ -225,17 +226,29 @@ void ViscaHead::ask_version(Time now) {
   if (tells_version_ && !unanswered_) unanswered_ = now;
 }
 
+// Says once that a camera does not count, by whose numbers no answer finds its command.
+void ViscaHead::count_number(int strange) {
+  strange_numbers_ = std::max(0, strange_numbers_ + strange);
+  if (strange_numbers_ < kMostStrangeNumbers || std::exchange(warned_of_numbers_, true) || !options_.warn)
+    return;
+  options_.warn("the " + title() +
+                " refuses the sequence numbers of its commands, or answers with others: give sequence=0");
+}
+
 // The order that an answer belongs to; nothing: to none that is still waited for.
-std::optional<ViscaHead::Sent> ViscaHead::answered(std::uint32_t sequence) {
+std::optional<ViscaHead::Sent> ViscaHead::answered(std::optional<std::uint32_t> number) {
   auto at = unanswered_orders_.begin();
-  if (numbered()) at = std::ranges::find(unanswered_orders_, sequence, &Sent::sequence);
+  if (number) {
+    at = std::ranges::find(unanswered_orders_, *number, &Sent::sequence);
+    count_number(at == unanswered_orders_.end() ? 1 : -1);
+  }
   if (at == unanswered_orders_.end()) return std::nullopt;
   const Sent sent = *at;
   unanswered_orders_.erase(unanswered_orders_.begin(), at + 1);  // earlier answers are lost
   return sent;
 }
 
-void ViscaHead::handle(const visca::Reply& reply, std::uint32_t sequence, Time now) {
+void ViscaHead::handle(const visca::Reply& reply, std::optional<std::uint32_t> number, Time now) {
   using Kind = visca::Reply::Kind;
   if (reply.kind == Kind::other || reply.address != options_.address) return;
   has_answered_ = true;
@@ -261,14 +274,14 @@ void ViscaHead::handle(const visca::Reply& reply, std::uint32_t sequence, Time n
     homed_ = true;
     return;
   }
-  const std::optional<Sent> sent = answered(sequence);
+  const std::optional<Sent> sent = answered(number);
   if (reply.kind == Kind::ack) {
     acknowledges_ = true;
     if (!sent) return;
     if (sent->order == Order::stop && stopping_) {
       stopping_ = moved_ = false;
       // Without numbers it may be the answer to a later one, if it comes late.
-      on_stopped(numbered() || now - sent->time <= kAnswerTime ? sent->time : sent_);
+      on_stopped(number || now - sent->time <= kAnswerTime ? sent->time : sent_);
     }
     if (sent->order == Order::home && homing_) homing_ = reply.socket;
     return;
@@ -285,7 +298,8 @@ void ViscaHead::read(Time now) {
   while (stream_.read(bytes)) {
     visca::Datagram datagram{.payload = bytes};
     if (stream_.datagrams()) datagram = visca::parse_datagram(bytes);
-    if (numbered() && visca::is_sequence_error(datagram)) {
+    if (has_header() && visca::is_sequence_error(datagram)) {
+      count_number(kRefusedNumber);
       reset_sequence();
       unanswered_orders_.clear();
       sent_pan_ = sent_tilt_ = INT32_MIN;  // what was sent meanwhile is not in force
@@ -293,13 +307,13 @@ void ViscaHead::read(Time now) {
     } else if (!datagram.control) {
       cutter_.append(datagram.payload);
     }
-    const std::uint32_t sequence = datagram.sequence;
+    const auto number = numbered() && datagram.header ? std::optional(datagram.sequence) : std::nullopt;
     received_ += datagram.payload.size();
     has_answered_ = has_answered_ || datagram.control;
     bytes.clear();
     while (const auto message = cutter_.take()) {
       has_visca_ = has_visca_ || (message->size() >= 3 && message->front() >= 0x80);
-      handle(visca::parse_reply(*message), sequence, now);
+      handle(visca::parse_reply(*message), number, now);
     }
   }
   // An answer that was lost belongs to no later command.

@@ -4,7 +4,8 @@
 // At most one move is on its way: the newest waits until the camera acknowledges the last one, refuses it, or has not
 // answered for kAnswerTime. A camera that has never acknowledged anything is sent commands at its rate. Stop goes out
 // at once, and again until it is acknowledged. Which command an answer belongs to is known from its sequence number,
-// where the line has these, else from the order: a camera answers in the order in which it was asked. Positions are
+// where the line has these and the camera counts, else from the order: a camera answers in the order in which it was
+// asked. Positions are
 // asked for every kInquiryPeriod, where the camera answers; one without them is sent the same speed again while it
 // turns.
 #pragma once
@@ -24,8 +25,11 @@ namespace cerberus::drivers {
 struct ViscaOptions {
   std::string device;  // byte_stream.h
   int baud = 9600;
-  int address = 1;       // 1 to 7, of a serial chain; 1 over IP
-  bool header = true;    // over UDP
+  int address = 1;     // 1 to 7, of a serial chain; 1 over IP
+  bool header = true;  // over UDP
+  // The number in every header, for cameras that do not count: they refuse numbers above 3, answer with always the same
+  // one, or without a header. Nothing: the driver counts.
+  std::optional<std::uint32_t> sequence{};
   bool feedback = true;  // ask for positions
   double zoom = -1;      // the position of the zoom to keep (visca.h); negative: whatever it is
   visca::SpeedTable speeds = visca::default_speed_table();
@@ -70,6 +74,10 @@ class ViscaHead final : public StreamDevice {
   // Inquiries of the version, from a camera at rest that reports no position: whether it is there.
   static constexpr int kVersionInquiries = 3;  // without an answer, after which the camera is asked no more
   static constexpr std::chrono::milliseconds kForgotten{1000};  // an answer that has not come by then is lost
+  // Answers without the number of a command, more than those with one, before it is said that the camera does not count.
+  // chosen: not those that a lost connection left on their way. A number that was refused counts for so many: a camera
+  // that refuses those above 3 answers four before.
+  static constexpr int kMostStrangeNumbers = 10, kRefusedNumber = 6;
   static constexpr double kRate =
       20;  // commands a second: a frame of 16 bytes at 9600 baud takes 17 ms both ways
 
@@ -81,7 +89,8 @@ class ViscaHead final : public StreamDevice {
     Time time{};
   };
   void on_connected(Time now) override;
-  bool numbered() const { return stream_.datagrams() && options_.header; }
+  bool has_header() const { return stream_.datagrams() && options_.header; }
+  bool numbered() const { return has_header() && !options_.sequence; }
   void reset_sequence();
   void send(const visca::Message& message);
   void send_order(Order order, const visca::Message& message, Time now);
@@ -92,9 +101,11 @@ class ViscaHead final : public StreamDevice {
   void send_zoom(Time now);
   void on_zoom(double position, Time now);
   std::string check_answers() const;
+  void count_number(int strange);
   void read(Time now);
-  void handle(const visca::Reply& reply, std::uint32_t sequence, Time now);
-  std::optional<Sent> answered(std::uint32_t sequence);
+  // number: of the command that is answered; nothing: the answer carries none.
+  void handle(const visca::Reply& reply, std::optional<std::uint32_t> number, Time now);
+  std::optional<Sent> answered(std::optional<std::uint32_t> number);
   bool waiting() const { return !unanswered_orders_.empty(); }
 
   ViscaOptions options_;
@@ -110,7 +121,9 @@ class ViscaHead final : public StreamDevice {
   bool has_answered_ = false;  // this camera, whatever
   std::size_t received_ = 0;   // bytes
   bool has_visca_ = false;     // a message has come, which may be an echo
-  int stops_ = 0;              // sent without an answer
+  int strange_numbers_ = 0;    // answers that carry no number of a command, less those that do
+  bool warned_of_numbers_ = false;
+  int stops_ = 0;  // sent without an answer
   Time sent_{}, asked_{};
   std::optional<Time> unanswered_;  // since when a camera that answers has not answered
   bool moved_ = false;              // a drive was sent, and no stop after it is acknowledged
