@@ -17,7 +17,8 @@
  * metadata each have a thread. */
 #define ANNOTATED                                                              \
   "videoconvert ! motiondetect ! tee name=t "                                  \
-  "t. ! queue ! motionoverlay ! videoconvert ! video/x-raw,format=I420 ! "     \
+  "t. ! queue ! motionoverlay ! videoconvertscale ! "                          \
+  "video/x-raw,format=I420,width=[2,8192,2],height=[2,8192,2] ! "              \
   "x264enc tune=zerolatency key-int-max=250 ! "                                \
   "rtph264pay name=pay0 pt=96 config-interval=1 aggregate-mode=zero-latency "  \
   "t. ! queue ! onvifmeta ! rtponvifmetapay name=pay1 pt=97"

@@ -229,7 +229,9 @@ class Writer {
   void encoder(const EncoderSettings& settings) {
     const publish::Encoder* found = publish::encoder_of(settings.element);
     if (found == nullptr) return;  // the settings name no other
-    add(" ! videoconvert ! video/x-raw,format=I420 ! ");
+    add(" ! ");
+    add(publish::kBeforeEncoder);
+    add(" ! ");
     add(publish::encoder_line(*found, kKeyframeDistance, settings.bitrate));
     if (found->codec == "h264") add(" ! h264parse");
   }

@@ -31,7 +31,8 @@
  * gst-launch-1.0 v4l2src ! videoconvert ! motiondetect ! motionoverlay trail-time=5000000000 crosshair=true ! \
  *     videoconvert ! autovideosink
  * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect ! motionoverlay show-trails=false ! \
- *     videoconvert ! x264enc ! mp4mux ! filesink location=annotated.mp4
+ *     videoconvertscale ! video/x-raw,format=I420,width=[2,8192,2],height=[2,8192,2] ! x264enc ! mp4mux ! \
+ *     filesink location=annotated.mp4
  * ]|
  *
  * Since: 0.1

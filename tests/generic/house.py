@@ -222,6 +222,20 @@ PARAMETER_SETS = re.search(r'rtph264pay config-interval=(\d+)',
                            (TOP / 'lib' / 'publish' / 'streams' / 'payloaders.cpp').read_text('utf-8'))[1]
 
 
+# An encoder of our own lines gets what it can take: encoders.h says why. What a decoder of H.264 gives is even already.
+BEFORE_ENCODER = re.search(r'kBeforeEncoder =\s*"([^"]*)"',
+                           (TOP / 'lib' / 'publish' / 'streams' / 'encoders.h').read_text('utf-8'))[1]
+
+
+def check_encoders(path):
+    if (path.suffix == '.launch' and 'h264dec' not in path.read_text('utf-8')) or path.name == 'rtsp_mount.c':
+        text = '\n'.join(line for line in path.read_text('utf-8').splitlines() if not line.startswith('#'))
+        text = re.sub(r'["\\\s]+', ' ', text)
+        found = re.findall(r'(.{0,200})! (?:\$\{ENCODER\}|(?!jpegenc)\w+enc\b)', text)
+        if not all(before.endswith(BEFORE_ENCODER + ' ') for before in found):
+            complain(path, f'an encoder without "{BEFORE_ENCODER}" in front')
+
+
 def check_commands():
     explained = ('pipelines/demo', 'pipelines/encoder', 'pipelines/rtsp', 'pipelines/run', 'pipelines/setup', 'tests/run')
     for command in (*explained, 'docs/generate'):
@@ -284,6 +298,7 @@ for each in files():
     check_installed_header(each)
     check_launch_file(each)
     check_payloaders(each)
+    check_encoders(each)
     check_links(each)
     check_named_pages(each)
     check_json(each)

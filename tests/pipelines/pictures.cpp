@@ -15,6 +15,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -23,6 +24,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr double kLeast = 28;  // dB of PSNR: below it a picture is damaged and not only compressed
 constexpr int kBits = 11, kBlock = 16, kRow = 6;  // the number and its parity: two rows of blocks
+constexpr int kLeft = 112, kTop = 180;            // in the middle of 320x240, below where people walk
 constexpr int kNone = -1;
 
 struct Size {
@@ -38,9 +40,9 @@ int with_parity(int number) {
   return number | (__builtin_popcount(static_cast<unsigned>(number)) & 1) << kBits;
 }
 
-// The top left corner of a bit's block: in the middle of the picture's lower half, where nothing is drawn for ever.
-std::pair<int, int> place(Size size, int bit) {
-  return {size.width / 2 + (bit % kRow - kRow / 2) * kBlock, size.height * 3 / 4 + bit / kRow * kBlock};
+// The top left corner of a bit's block: the same in every size, so that a picture can be cropped.
+std::pair<int, int> place(int bit) {
+  return {kLeft + bit % kRow * kBlock, kTop + bit / kRow * kBlock};
 }
 
 // Textures of some pixels, as grass and walls have them, in all planes; a person of another texture walks.
@@ -60,7 +62,7 @@ Bytes scene(Size size, int number) {
         picture[size.luma() + plane * size.chroma() + static_cast<std::size_t>(y) * size.chroma_width() + x] =
             static_cast<std::uint8_t>(128 + 20 * std::sin((plane ? x : y) * .05));
   for (int bit = 0; bit <= kBits; ++bit) {
-    const auto [x, y] = place(size, bit);
+    const auto [x, y] = place(bit);
     const std::uint8_t level = with_parity(number) >> bit & 1 ? 235 : 16;
     for (int row = 0; row < kBlock; ++row)
       std::memset(&picture[static_cast<std::size_t>(y + row) * size.width + x], level, kBlock);
@@ -72,7 +74,7 @@ Bytes scene(Size size, int number) {
 int number_of(Size size, std::span<const std::uint8_t> picture) {
   int found = 0;
   for (int bit = 0; bit <= kBits; ++bit) {
-    const auto [left, top] = place(size, bit);
+    const auto [left, top] = place(bit);
     int sum = 0;
     for (int y = top + 4; y < top + 12; ++y)
       for (int x = left + 4; x < left + 12; ++x) sum += picture[static_cast<std::size_t>(y) * size.width + x];

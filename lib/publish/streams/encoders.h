@@ -23,6 +23,12 @@ std::span<const Encoder> encoders();
 // nullptr: no encoder has this element.
 const Encoder* encoder_of(std::string_view element);
 
+// Stands before every encoder: 8 bits and 4:2:0, which all players show, and an even size, which H.264 needs. An odd last
+// column or row is scaled away; what is even and I420 passes as it is. Launch files have the same text, and rtsp_mount.c
+// (tests/generic/house.py).
+inline constexpr std::string_view kBeforeEncoder =
+    "videoconvertscale ! video/x-raw,format=I420,width=[2,8192,2],height=[2,8192,2]";
+
 // The text for gst-launch-1.0: a keyframe every `gop` frames, `kbit` kilobits a second. JPEG has neither.
 std::string encoder_line(const Encoder& encoder, int gop, int kbit);
 
