@@ -18,7 +18,7 @@ struct TimeoutTrialParameters {
   double lead = 1;       // seconds; derived: a dead time of 500 ms, and as long to be seen turning
   double patience = 3;   // seconds; derived: longer than the Timeout that a driver asks its device for
   double restart = 5.5;  // seconds until a new helper has stopped the head; derived: a start may take
-                         // heads::HeadLink::kStartPatience, and then comes a dead time of 500 ms
+                         // drivers::HelperWatch::Parameters::start, and then comes a dead time of 500 ms
   double still =
       0.3;  // seconds without motion after which the head has stopped; derived: 4 frames at 15 a second
   unsigned frames = 4;  // measured ones without motion that span `still`; derived: 15 a second

@@ -106,6 +106,11 @@ Plan Plan::make(Time start, const AxisState& state, const AxisCommand& command, 
   return plan;
 }
 
+void Plan::shift(double way) {
+  for (double* position : {&target_, &low_, &high_}) *position += way;
+  for (Piece& piece : pieces_) piece.position += way;
+}
+
 Time Plan::time_of(double seconds) const {
   return start_ + Time(static_cast<Time::rep>(std::ceil(seconds * 1e9)));
 }

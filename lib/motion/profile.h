@@ -59,6 +59,9 @@ class Plan {
   // Returns the end of the piece at `time`; kNever if it does not end.
   Time piece_end(Time time) const;
 
+  // The same motion, this far away (radians).
+  void shift(double way);
+
   Time start() const { return start_; }
   Time end() const;
   double target() const { return target_; }  // position of rest, radians

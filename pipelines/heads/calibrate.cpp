@@ -15,7 +15,6 @@
 #include "control/calibration.h"
 #include "control/timeout_trial.h"
 #include "drivers/head/head_calibration.h"
-#include "drivers/helper/repeated_start.h"
 #include "heads/head_link.h"
 #include "heads/tool.h"
 
@@ -184,17 +183,7 @@ struct Session {
   // Starts a new helper, which stops the head. Returns what is wrong.
   std::string start_again() {
     keys.clear();
-    const drivers::RepeatedStart again{
-        [this] { return link.start(options.driver, options.setup); }, now_seconds,
-        [this] { return keys.pressed(); }, [] { g_usleep(10000); },
-        [](const std::string& wrong) {
-          std::fprintf(
-              stderr,
-              "cerberus-heads: %s. The head may still be turning: cut its power if it does. It is tried "
-              "again; a key ends that\n",
-              wrong.c_str());
-        }};
-    return again.run();
+    return link.start_again([this] { return keys.pressed(); });
   }
 };
 
@@ -257,8 +246,7 @@ int calibrate_head(const ToolOptions& options) {
   auto trial_end = control::TimeoutWatch::End::none;
   if (wrong.empty() && trial)
     wrong = session.try_timeout(*trial, pan.position(), reach(limits.pan), trial_end, found.stops_alone);
-  link.stop();
-  link.finish();
+  if (const std::string ended = link.finish(); wrong.empty()) wrong = ended;
   if (!wrong.empty()) return fail(wrong);
   found.driver = options.driver;
   found.device = drivers::calibrated_device(options.driver, options.setup.device, options.setup.command);

@@ -20,8 +20,7 @@ class Motors:
         self.stop()
 
     def set_limits(self, words):
-        pan_min, pan_max, tilt_min, tilt_max = map(float, words[:4])
-        self.limits = (pan_min, pan_max), (tilt_min, tilt_max)
+        self.limits = tuple(map(float, words[:2])), tuple(map(float, words[2:4]))
 
     def stop(self):
         self.speed, self.target = [0.0, 0.0], [None, None]  # degrees a second, degrees
@@ -46,15 +45,17 @@ def run(motors, timeout):
     pending, heard, last = b'', time.monotonic(), time.monotonic()
     while True:
         if select.select([0], [], [], STEP)[0]:
-            pending += (piece := os.read(0, 4096))
-            if not piece:
+            if not (piece := os.read(0, 4096)):
                 return  # the pipeline has ended
+            pending += piece
             heard = time.monotonic()
         *lines, pending = pending.split(b'\n')
         for words in (line.decode().split() for line in lines):
             if words[0] == 'move':
                 words.pop(0)
                 motors.command(0, words), motors.command(1, words)
+            elif words[0] == 'alive':  # within half a second, or the pipeline takes this program for hung
+                os.write(1, b'alive\n')
             elif words[0] == 'limits':
                 motors.set_limits(words[1:])
             elif words[0] in ('stop', 'quit'):
@@ -70,7 +71,7 @@ hello = sys.stdin.buffer.raw.readline().decode().split()
 if hello[:2] != ['cerberus-head', '1']:
     sys.exit('not the line protocol of a Cerberus head, version 1')
 axes = Motors(hello)
-print('ready 1 position velocity feedback rate 50', flush=True)
+print('ready 1 position velocity feedback alive rate 50', flush=True)
 try:
     run(axes, float(hello[hello.index('timeout') + 1]))
 except BrokenPipeError:

@@ -14,8 +14,33 @@ WAITING = 4  # jogs that the board has not accepted yet
 CANCEL, HOLD, RESET = b'\x85', b'!', b'\x18'
 
 
+class Pipeline:
+    """Its lines. `alive` is answered as it comes, also while the board is being stopped, which may take a second."""
+    def __init__(self):
+        self.pending, self.lines, self.heard, self.ended = b'', [], time.monotonic(), False
+
+    def receive(self):
+        if self.ended or not select.select([0], [], [], 0)[0]:
+            return
+        if not (piece := os.read(0, 4096)):
+            self.ended = True
+            return
+        self.heard = time.monotonic()
+        *lines, self.pending = (self.pending + piece).split(b'\n')
+        for words in (line.decode().split() for line in lines):
+            if words == ['alive']:
+                print('alive', flush=True)
+            elif words:
+                self.lines.append(words)
+
+    def take(self):
+        lines, self.lines = self.lines, []
+        return lines
+
+
 class Board:
-    def __init__(self, path):
+    def __init__(self, path, pipeline):
+        self.pipeline = pipeline
         self.fd = os.open(path, os.O_RDWR | os.O_NOCTTY)
         tty.setraw(self.fd)
         mode = termios.tcgetattr(self.fd)
@@ -50,6 +75,7 @@ class Board:
     def stop(self):
         self.send(CANCEL)
         for tries in range(20):  # a second; a jog that is not acknowledged yet may still begin
+            self.pipeline.receive()
             self.send(b'?')
             if self.receive(STEP) and self.state not in ('Jog', 'Run', 'Hold:1') and not self.waiting:
                 break
@@ -60,26 +86,22 @@ class Board:
             self.send(RESET)
 
 
-def run(board, hello):
+def run(board, pipeline, hello):
     low, high, timeout = hello[5:9:2], hello[6:9:2], hello[3]
-    speeds, moving, pending = [0.0, 0.0], [0.0, 0.0], b''
-    heard = asked = jogged = time.monotonic()
-    while True:
+    speeds, moving = [0.0, 0.0], [0.0, 0.0]
+    asked = jogged = time.monotonic()
+    while not pipeline.ended:
         select.select([0, board.fd], [], [], STEP / 5)
         now = time.monotonic()
-        if select.select([0], [], [], 0)[0]:
-            if not (piece := os.read(0, 4096)):
-                return  # the pipeline has ended
-            heard, pending = now, pending + piece
-        *lines, pending = pending.split(b'\n')
-        for word, *rest in (line.decode().split() for line in lines):
+        pipeline.receive()
+        for word, *rest in pipeline.take():
             if word == 'move':
                 speeds = [float(rest.pop(0)) if rest.pop(0) == 'at' else 0.0 for _ in speeds]
             elif word == 'limits':
                 low, high = [float(n) for n in rest[0::2]], [float(n) for n in rest[1::2]]
             elif word in ('stop', 'quit'):
                 speeds = [0.0, 0.0]
-        if now - heard > timeout:
+        if now - pipeline.heard > timeout:
             speeds = [0.0, 0.0]  # the pipeline hangs
         if board.receive():
             print('pose %.3f %.3f 0 0 0.02' % (*board.position,), flush=True)
@@ -101,14 +123,15 @@ words = sys.stdin.buffer.raw.readline().decode().split()
 if words[:2] != ['cerberus-head', '1']:
     sys.exit('not the line protocol of a Cerberus head, version 1')
 try:
-    grbl = Board(sys.argv[1])
+    cerberus = Pipeline()
+    grbl = Board(sys.argv[1], cerberus)
     grbl.stop()
     if grbl.state in ('', 'Alarm'):
         sys.exit(print('fault the GRBL board', 'is in alarm: home it ($H) or unlock it ($X)' if grbl.state else
                        'does not answer', flush=True))
-    print('ready 1 velocity feedback rate 20', flush=True)
+    print('ready 1 velocity feedback alive rate 20', flush=True)
     try:
-        run(grbl, [float(n) if n[-1].isdigit() else n for n in words])
+        run(grbl, cerberus, [float(n) if n[-1].isdigit() else n for n in words])
     finally:
         grbl.stop()
 except (OSError, IndexError) as error:

@@ -4,28 +4,43 @@
 #include <poll.h>
 
 #include <chrono>
-#include <csignal>
+#include <cstdio>
+#include <thread>
+#include <utility>
 
 #include "drivers/helper/helper_head.h"
+#include "drivers/helper/repeated_start.h"
 
 namespace cerberus::heads {
 
 using namespace drivers;
+
+namespace {
+
+Time now_is() {
+  return std::chrono::duration_cast<Time>(std::chrono::steady_clock::now().time_since_epoch());
+}
+
+}  // namespace
 
 double now_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 std::string HeadLink::start(const std::string& driver, const HeadSetup& setup) {
+  driver_ = driver;
+  setup_ = setup;
   ready_ = false;
   fault_.clear();
   sent_.clear();
+  hung_.clear();
   lines_ = {};
+  watch_.begin(now_is());
   if (std::string wrong = process_.start(helper_arguments(driver, setup)); !wrong.empty()) return wrong;
   send(hello_line(setup, setup.helper_timeout));
-  for (const double end = now_seconds() + kStartPatience; now_seconds() < end && !ready_;)
-    if (std::string wrong = serve(20); !wrong.empty()) return wrong;
-  return ready_ ? "" : "the head's helper does not answer";
+  while (!ready_)
+    if (std::string wrong = read(20); !wrong.empty()) return wrong;
+  return {};
 }
 
 void HeadLink::send(const std::string& line) {
@@ -44,8 +59,18 @@ void HeadLink::turn(double pan, double tilt) {
 }
 
 std::string HeadLink::serve(int milliseconds) {
+  std::string wrong = read(milliseconds);
+  if (hung_.empty()) return wrong;
+  kill();
+  const std::string not_stopped = start_again();
+  return wrong + (not_stopped.empty() ? ". It was killed, and another one has stopped the head"
+                                      : ". It was killed. Another one was not started: " + not_stopped);
+}
+
+std::string HeadLink::read(int milliseconds) {
   if (now_seconds() - alive_ > 0.1) {
-    send("alive\n");
+    send(std::string(kAlive) + '\n');
+    watch_.ask();
     alive_ = now_seconds();
   }
   pollfd wait{process_.fd(), POLLIN, 0};
@@ -56,6 +81,7 @@ std::string HeadLink::serve(int milliseconds) {
   while (const auto text = lines_.take()) {
     const auto line = parse_helper_line(*text);
     if (!line) continue;
+    watch_.take(*line);
     if (const auto* came = std::get_if<ReadyLine>(&*line)) {
       abilities_ = came->abilities;
       ready_ = true;
@@ -67,12 +93,40 @@ std::string HeadLink::serve(int milliseconds) {
       pose = *at;
     }
   }
-  return !fault_.empty() ? fault_ : there ? "" : "the head's helper ended";
+  if (!fault_.empty()) return fault_;
+  const std::string helper = "the head's helper `" + helper_name(driver_, setup_) + "` ";
+  if (!there) return helper + "ended";
+  hung_ = watch_.judge(now_is(), sent_.find(" at ") != std::string::npos);
+  return hung_.empty() ? "" : helper + "hangs: " + hung_;
+}
+
+std::string HeadLink::finish() {
+  std::string wrong;
+  stop();
+  alive_ = 0;  // whether it hangs just now is asked at once
+  do wrong = process_.running() && ready_ ? serve(20) : "";
+  while (wrong.empty() && watch_.waits() && ready_ && process_.running());
+  process_.finish();
+  return wrong;
 }
 
 void HeadLink::kill() {
-  if (process_.pid() > 0) ::kill(process_.pid(), SIGKILL);
+  process_.kill();
   process_.finish();
+}
+
+std::string HeadLink::start_again(const std::function<bool()>& pressed) {
+  const std::string driver = driver_;
+  const HeadSetup setup = setup_;
+  const RepeatedStart again{[&] { return start(driver, setup); }, now_seconds, pressed,
+                            [] { std::this_thread::sleep_for(std::chrono::milliseconds(10)); },
+                            [](const std::string& wrong) {
+                              std::fprintf(stderr,
+                                           "cerberus-heads: %s. The head may still be turning: cut its power "
+                                           "if it does. It is tried again; a key ends that\n",
+                                           wrong.c_str());
+                            }};
+  return again.run();
 }
 
 }  // namespace cerberus::heads

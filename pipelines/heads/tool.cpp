@@ -74,8 +74,7 @@ int move_head(const ToolOptions& options) {
                   sensing::degrees(link.pose->tilt.position));
     link.pose.reset();
   }
-  link.stop();
-  link.finish();
+  if (const std::string end = link.finish(); wrong.empty()) wrong = end;
   if (!wrong.empty()) std::fprintf(stderr, "cerberus-heads: %s\n", wrong.c_str());
   return wrong.empty() ? 0 : 1;
 }

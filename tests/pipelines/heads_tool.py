@@ -8,6 +8,7 @@ import os
 import pty
 import re
 import select
+import signal
 import subprocess
 import sys
 import time
@@ -76,6 +77,18 @@ def test_without_enter_nothing_moves():
     terminal.press(b'n\n')
     assert terminal.status() == 1
     assert terminal.pan() is None
+
+
+def test_a_helper_that_hangs_is_killed_and_another_one_stops_the_head():
+    terminal = Terminal('move', 'external', *EXAMPLE, '--yes', '--pan=0.5', '--seconds=60')
+    terminal.until(r'pan (0\.[1-9]|[1-9])')
+    with open(f'/proc/{terminal.process.pid}/task/{terminal.process.pid}/children', encoding='ascii') as file:
+        helper, = map(int, file.read().split())
+    os.kill(helper, signal.SIGSTOP)
+    assert terminal.status() == 1
+    assert re.search(r'helper `\S*python\S*` hangs: it has not answered `alive` for 0.5 s. It was killed, and another '
+                     'one has stopped the head', terminal.said), terminal.said
+    assert not os.path.exists(f'/proc/{helper}')
 
 
 def test_a_port_is_asked_if_it_is_named():

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "sensing/angles.h"
+#include "support/children.h"
 #include "support/suite.h"
 #include "support/text.h"
 #include "support/time_bounds.h"
@@ -219,6 +220,56 @@ START_TEST(a_helper_that_ended_is_reported_and_started_again) {
 }
 END_TEST
 
+// The commands' failures until one says that the helper hangs.
+std::string hung(HelperHead& head) {
+  Time time = 0s;
+  for (const auto end = Clock::now() + 60s; Clock::now() < end; std::this_thread::sleep_for(10ms))
+    if (std::string wrong = head.command({time += 1ms, {Kind::velocity, radians(5), 0}, {}}); !wrong.empty())
+      return wrong;
+  return "it does not";
+}
+
+START_TEST(the_shipped_example_answers_and_is_killed_and_replaced_when_it_hangs) {
+  HelperHead head("external");
+  const std::string example = std::string(std::getenv("CERBERUS_SOURCE")) + "/pipelines/heads/example.py";
+  assert_text(head.open(setup_with("python3 " + example)), "");
+  std::this_thread::sleep_for(1500ms);
+  assert_text(head.command({1ms, {Kind::velocity, radians(5), 0}, {}}), "");
+  const auto first = cerberus::tests::children("python3");
+  ck_assert_uint_eq(first.size(), 1);
+  ::kill(first[0], SIGSTOP);
+  assert_text(
+      hung(head),
+      "the head's helper `python3` hangs: it has not answered `alive` for 0.5 s. It was killed, and is "
+      "started again to stop the head");
+  std::string wrong = "not yet";
+  Time time = 0s;
+  for (const auto end = Clock::now() + 60s; Clock::now() < end && !wrong.empty();
+       std::this_thread::sleep_for(10ms))
+    wrong = head.command({time += 1ms, {Kind::velocity, radians(5), 0}, {}});
+  assert_text(wrong, "");
+  ck_assert(cerberus::tests::children("python3") != first);
+}
+END_TEST
+
+// What it has started holds its socket, and perhaps its device: of two at most that of the new one lives.
+START_TEST(a_helper_that_sends_no_more_poses_while_its_head_turns_is_killed_with_what_it_has_started) {
+  const std::string length = "9." + std::to_string(::getpid());
+  HelperHead head("external");
+  assert_text(head.open(setup_with("sh -c 'read hello; echo ready 1 velocity feedback; sleep " + length +
+                                   "; cat >/dev/null'")),
+              "");
+  assert_text(
+      hung(head),
+      "the head's helper `sh` hangs: it has sent no `pose` for 1 s while its head was to turn. It was "
+      "killed, and is started again to stop the head");
+  std::string sleeping = "sleep";
+  (sleeping += '\0') += length;
+  for (const auto end = Clock::now() + 500ms; Clock::now() < end; std::this_thread::sleep_for(20ms))
+    ck_assert_int_le(cerberus::tests::running(sleeping), 1);
+}
+END_TEST
+
 START_TEST(a_helper_sees_the_end_within_half_a_second_of_the_death_of_the_pipeline) {
   const Recorder helper("velocity");
   const pid_t pipeline = ::fork();
@@ -247,6 +298,8 @@ int main() {
        a_head_that_found_its_reference_is_there_and_measured_for_a_moment, a_head_without_a_reference_says_so,
        a_helper_that_cannot_open_its_head_reports_the_reason, an_emergency_stop_between_two_looks_is_seen,
        a_helper_that_ended_is_reported_and_started_again,
+       the_shipped_example_answers_and_is_killed_and_replaced_when_it_hangs,
+       a_helper_that_sends_no_more_poses_while_its_head_turns_is_killed_with_what_it_has_started,
        a_helper_sees_the_end_within_half_a_second_of_the_death_of_the_pipeline},
       200);
 }

@@ -46,7 +46,7 @@ void with_range(OnvifOptions& options) {
 START_TEST(a_camera_turns_and_stops) {
   OnvifCamera camera;
   OnvifRig rig(camera);
-  assert_text(rig.served.line("ready"), "ready 1 velocity rate 10");
+  assert_text(rig.served.line("ready"), "ready 1 velocity alive rate 10");
   rig.served.say("move at 45 hold");
   ck_assert(rig.served.until([&] { return camera.pan() > 5; }));
   ck_assert_double_eq_tol(camera.speed(), 45, 1e-9);
@@ -78,7 +78,7 @@ END_TEST
 // A pipeline that is wrong, or cerberus-heads move: this one would drive on for ever.
 START_TEST(a_camera_without_positions_is_stopped_a_little_beyond_its_limits_by_the_speeds_that_it_was_sent) {
   Rig rig;
-  assert_text(rig.served.line("ready"), "ready 1 velocity rate 10");
+  assert_text(rig.served.line("ready"), "ready 1 velocity alive rate 10");
   rig.served.say("limits -5 5 -5 5");
   rig.served.say("move at 20 hold");
   ck_assert(rig.served.until([&] { return rig.camera.pan() > 5 && rig.camera.speed() == 0; }));
@@ -203,7 +203,7 @@ END_TEST
 
 START_TEST(positions_are_reported_and_a_camera_at_its_limit_is_stopped) {
   Rig rig({}, with_range);
-  assert_text(rig.served.line("ready"), "ready 1 velocity feedback rate 10");
+  assert_text(rig.served.line("ready"), "ready 1 velocity feedback alive rate 10");
   rig.served.say("limits -10 10 -10 10");
   ck_assert(
       rig.served.until([&] { return rig.camera.pan() > 8 && rig.camera.speed() == 0; }, "move at 45 hold"));
@@ -216,7 +216,7 @@ END_TEST
 
 START_TEST(a_camera_with_absolute_moves_goes_to_an_angle) {
   Rig rig({.degrees = true}, [](OnvifOptions& options) { options.login.try_absolute = true; });
-  assert_text(rig.served.line("ready"), "ready 1 position velocity feedback rate 10");
+  assert_text(rig.served.line("ready"), "ready 1 position velocity feedback alive rate 10");
   rig.served.line("pose");
   rig.served.say("move to 30 60 to -5 20");
   ck_assert(rig.served.until(
@@ -231,7 +231,7 @@ START_TEST(a_camera_that_claims_absolute_moves_and_refuses_them_is_turned_at_spe
   OnvifOptions options = onvif_options(camera);
   options.login.try_absolute = true;
   OnvifRig rig(options);
-  assert_text(rig.served.line("ready"), "ready 1 velocity feedback rate 10");
+  assert_text(rig.served.line("ready"), "ready 1 velocity feedback alive rate 10");
 }
 END_TEST
 
@@ -246,7 +246,7 @@ START_TEST(a_camera_without_positions_finds_its_reference_by_a_preset) {
       if (!options.home) options.login.preset = preset;
       options.home_time = 1s;
     });
-    assert_text(rig.served.line("ready"), "ready 1 velocity home rate 10");
+    assert_text(rig.served.line("ready"), "ready 1 velocity home alive rate 10");
     ck_assert(rig.served.until([&] { return rig.camera.pan() > 20; }, "move at 80 hold"));
     rig.served.say("home");
     assert_text(rig.served.line("homed"), "homed 0 0");
@@ -370,7 +370,7 @@ START_TEST(a_camera_that_is_too_slow_for_a_whole_login_is_driven_by_what_is_know
   OnvifOptions options = onvif_options_with_range(camera);
   options.login_time = 900ms;
   OnvifRig rig(options);
-  assert_text(rig.served.line("ready"), "ready 1 velocity rate 10");
+  assert_text(rig.served.line("ready"), "ready 1 velocity alive rate 10");
   ck_assert(rig.served.until([&] { return camera.speed() > 44; }, "move at 45 hold"));
 }
 END_TEST

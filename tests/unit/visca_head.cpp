@@ -107,7 +107,7 @@ constexpr ViscaCamera::Line kLines[] = {ViscaCamera::Line::serial, ViscaCamera::
 START_TEST(a_camera_turns_reports_and_stops_on_every_line) {
   ViscaCamera camera(kLines[_i]);
   Served served(options_for(camera));
-  assert_text(served.line("ready"), "ready 1 velocity feedback rate 20");
+  assert_text(served.line("ready"), "ready 1 velocity feedback alive rate 20");
   served.say("move at 45 hold");
   ck_assert(served.until([&] { return camera.pan() > 5; }));
   ck_assert_double_eq(camera.speed(), 45);
@@ -124,7 +124,7 @@ START_TEST(a_camera_that_is_slow_to_answer_at_first_is_one_with_positions) {
   faults.acknowledges = false;
   ViscaCamera camera(ViscaCamera::Line::tcp, faults);
   Served served(options_for(camera));
-  assert_text(served.line("ready"), "ready 1 velocity feedback rate 20");
+  assert_text(served.line("ready"), "ready 1 velocity feedback alive rate 20");
 }
 END_TEST
 
@@ -181,7 +181,7 @@ END_TEST
 
 START_TEST(a_camera_that_acknowledges_and_reports_nothing_is_no_fault) {
   Rig rig({.reports = false});
-  assert_text(rig.served.line("ready"), "ready 1 velocity home rate 20");
+  assert_text(rig.served.line("ready"), "ready 1 velocity home alive rate 20");
   rig.served.say("move at 9 hold");
   ck_assert(rig.served.until([&] { return rig.camera.pan() > 12; }));  // 1.3 s without anything to say
   ck_assert_double_eq(rig.camera.speed(), 9);
@@ -207,7 +207,7 @@ START_TEST(a_camera_without_the_header_of_visca_over_ip_is_understood) {
   faults.header = false;
   ViscaCamera camera(ViscaCamera::Line::udp, faults);
   Served served(options_for(camera, false));
-  assert_text(served.line("ready"), "ready 1 velocity feedback rate 20");
+  assert_text(served.line("ready"), "ready 1 velocity feedback alive rate 20");
   served.say("move at 25 hold");
   ck_assert(served.until([&] { return camera.speed() == 25; }));
 }
@@ -313,7 +313,7 @@ END_TEST
 
 START_TEST(a_camera_finds_its_home_and_says_so) {
   Rig rig({.reports = false});
-  assert_text(rig.served.line("ready"), "ready 1 velocity home rate 20");
+  assert_text(rig.served.line("ready"), "ready 1 velocity home alive rate 20");
   ck_assert(rig.served.until([&] { return rig.camera.pan() > 5; }, "move at 45 hold"));
   rig.served.say("home");
   assert_text(rig.served.line("homed"), "homed 0 0");
@@ -495,12 +495,12 @@ START_TEST(a_camera_is_driven_at_its_address_on_a_serial_line_and_no_other_is) {
   ViscaOptions options = options_for(camera);
   {
     Served first(options);
-    assert_text(first.line("ready"), "ready 1 velocity home rate 20");  // address 1 answers nothing
+    assert_text(first.line("ready"), "ready 1 velocity home alive rate 20");  // address 1 answers nothing
     first.say("move at 45 hold");
   }
   options.address = 2;
   Served second(options);
-  assert_text(second.line("ready"), "ready 1 velocity feedback rate 20");
+  assert_text(second.line("ready"), "ready 1 velocity feedback alive rate 20");
   ck_assert_double_eq(camera.pan(), 0);
   ck_assert(second.until([&] { return camera.speed() == 45; }, "move at 45 hold"));
   ck_assert(second.until([&] { return camera.speed() == 0; }, "stop"));

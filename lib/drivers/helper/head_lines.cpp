@@ -80,6 +80,7 @@ std::optional<HelperLine> parse_ready(Words words) {
     if (word == "velocity") ready.abilities.velocity = true;
     if (word == "feedback") ready.abilities.feedback = true;
     if (word == "home") ready.abilities.home = true;
+    if (word == kAlive) ready.abilities.alive = true;
     if (word != "rate") continue;
     const std::optional<double> rate = words.number();
     if (!rate || *rate < 1 || *rate > 1000) return std::nullopt;
@@ -170,6 +171,7 @@ std::string ready_line(const HeadAbilities& abilities) {
   if (abilities.velocity) line += " velocity";
   if (abilities.feedback) line += " feedback";
   if (abilities.home) line += " home";
+  if (abilities.alive) line.append(" ").append(kAlive);
   line += " rate";
   append(line, abilities.rate);
   return line;
@@ -216,7 +218,7 @@ std::optional<PipelineLine> parse_pipeline_line(std::string_view text) {
       line = LimitsLine{*limits};
   } else if (word == "home") {
     line = HomeLine{};
-  } else if (word == "alive") {
+  } else if (word == kAlive) {
     line = AliveLine{};
   } else if (word == "stop") {
     line = StopLine{};
@@ -261,6 +263,7 @@ std::optional<HelperLine> parse_helper_line(std::string_view line) {
   if (word == "homed") return parse_homed(words);
   if (word == "fault" && !words.rest().empty()) return FaultLine{words.rest()};
   if (word == "recovered" && words.rest().empty()) return RecoveredLine{};
+  if (word == kAlive && words.rest().empty()) return AliveLine{};
   if (word == "emergency") {
     const std::string state = words.rest();
     if (state == "pressed" || state == "released") return EmergencyLine{state == "pressed"};

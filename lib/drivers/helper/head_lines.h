@@ -11,7 +11,8 @@
 //     home                              looks for the reference
 //     alive | stop | quit
 //   helper -> pipeline
-//     ready 1 [position] [velocity] [feedback] [home] [rate N]
+//     ready 1 [position] [velocity] [feedback] [home] [alive] [rate N]
+//     alive                             of a helper with that ability: the answer to `alive`
 //     pose PAN TILT PAN-SPEED TILT-SPEED AGE
 //     speeds PAN TILT AGE               of a head without feedback: what its steps make of the last `move`
 //     zoom POSITION                     0: the widest, 1: the longest focal length
@@ -40,6 +41,7 @@ struct HeadAbilities {
   bool feedback = false;  // it sends `pose` lines
   double rate = 50;       // commands a second that it takes, 1 to 1000
   bool home = false;      // it finds a reference: `home`
+  bool alive = false;     // it answers each `alive` within 500 ms
 };
 
 struct ReadyLine {
@@ -70,9 +72,10 @@ struct StoppedLine {
 struct EmergencyLine {
   bool pressed = false;  // the device's emergency stop
 };
+struct AliveLine {};  // the question and its answer
 // What a helper sends.
 using HelperLine = std::variant<ReadyLine, PoseLine, SpeedsLine, HomedLine, ZoomLine, FaultLine,
-                                RecoveredLine, StoppedLine, EmergencyLine>;
+                                RecoveredLine, StoppedLine, EmergencyLine, AliveLine>;
 
 struct HelloLine {
   HeadSetup setup;  // limits, start and helper_timeout; the rest as by default
@@ -84,7 +87,6 @@ struct LimitsLine {
   motion::Limits limits;  // the stops only
 };
 struct HomeLine {};
-struct AliveLine {};
 struct StopLine {};
 struct QuitLine {};
 // What a pipeline sends.
@@ -100,6 +102,7 @@ std::string pose_line(const PoseLine& pose);
 std::string speeds_line(const SpeedsLine& speeds);
 std::string homed_line(const HomedLine& homed);
 std::string zoom_line(const ZoomLine& zoom);
+inline constexpr std::string_view kAlive = "alive";  // in both directions
 
 // One line without its line feed. Nothing: it is no line of this protocol, a number is not finite, its limits are not
 // those of a head (motion::check(); `limits` alone may exclude zero: those of a corrected head are shifted), or its

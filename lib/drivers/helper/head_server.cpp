@@ -20,7 +20,9 @@ void HeadServer::obey(const std::string& text, Time now) {
       ended_ = failed_ = true;
       return;
     }
-    send_(ready_line(device_.abilities()));
+    HeadAbilities abilities = device_.abilities();
+    abilities.alive = true;
+    send_(ready_line(abilities));
     return;
   }
   if (!greeted_) return;
@@ -41,6 +43,8 @@ void HeadServer::obey(const std::string& text, Time now) {
     move(limits_.tilt, limits->limits.tilt);
     device_.limit(limits_, now);
     obeyed_ = true;  // a head beyond them returns
+  } else if (std::get_if<AliveLine>(&*line)) {
+    send_(std::string(kAlive));
   } else if (std::get_if<StopLine>(&*line)) {
     device_.stop(now);
     obeyed_ = false;

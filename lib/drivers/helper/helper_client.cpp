@@ -39,25 +39,29 @@ std::string HelperClient::open(const HeadSetup& setup) {
 }
 
 void HelperClient::begin(Time now) {
-  ready_ = pressed_ = false;
+  HeadSetup here = setup_;
+  Pose pose, model;
+  if (state(now, pose).empty() && model_.state(now, model).empty()) {
+    here.pan = pose.pan.position;
+    here.tilt = pose.tilt.position;
+    // It stands until the next command.
+    model_.place(now, {here.pan - model.pan.position, here.tilt - model.tilt.position}, true);
+  }
+  last_.pan = last_.tilt = {};
+  follows_ = false;
+  ready_ = pressed_ = reckons_ = false;
   fault_.clear();
   last_move_.clear();
   pan_correction_ = tilt_correction_ = 0;
   measured_.reset();
   homing_.reset();
   zoom_.reset();
-  reckons_ = false;
-  HeadSetup here = setup_;
-  if (Pose pose; model_.state(now, pose).empty()) {
-    here.pan = pose.pan.position;
-    here.tilt = pose.tilt.position;
-  }
   send_(hello_line(here, setup_.helper_timeout));
 }
 
 void HelperClient::lose(std::string why) {
   ready_ = false;
-  fault_ = std::move(why);
+  fault_ = loss_ = std::move(why);
 }
 
 bool HelperClient::is_fresh(Time now) const {
@@ -143,9 +147,10 @@ void HelperClient::check_homing(Time now) {
   notice_ = "the head did not find its reference";
 }
 
-void HelperClient::handle(const std::string& text, Time now) {
-  const auto line = parse_helper_line(text);
+std::optional<HelperLine> HelperClient::handle(const std::string& text, Time now) {
+  auto line = parse_helper_line(text);
   if (line) take(*line, now);
+  return line;
 }
 
 void HelperClient::take(const HelperLine& line, Time now) {
@@ -208,7 +213,20 @@ std::string HelperClient::why_idle() const {
   return ready_ ? "" : "the head's helper has been started again and is not ready yet";
 }
 
+std::string HelperClient::fault_at_rest() {
+  if (std::string loss = std::exchange(loss_, {}); !loss.empty()) return loss;
+  return pressed_ ? std::string() : why_idle();
+}
+
+bool HelperClient::turns(Time now) {
+  if (!ready_ || !fault_.empty() || pressed_) return false;
+  if (follows_) return last_move_.find(" at ") != std::string::npos;
+  Pose pose;
+  return !last_move_.empty() && model_.state(now, pose).empty() && pose.moving();
+}
+
 std::string HelperClient::execute(Time now) {
+  if (std::string loss = std::exchange(loss_, {}); !loss.empty()) return loss;
   if (std::string wrong = why_idle(); !wrong.empty()) return wrong;
   if (last_.stop)
     send_stop();

@@ -32,9 +32,10 @@ class HelperClient {
   std::string open(const HeadSetup& setup);
   // A helper was started: greets it.
   void begin(Time now);
-  // A line of the helper, without its line feed.
-  void handle(const std::string& text, Time now);
-  // The helper is gone, for this reason. begin() is for its successor.
+  // A line of the helper, without its line feed. Returns it if it is one of the protocol.
+  std::optional<HelperLine> handle(const std::string& text, Time now);
+  // The helper is gone, for this reason, which is reported also where its successor is ready sooner. begin() is for that
+  // successor; its head stands until the next command.
   void lose(std::string why);
 
   // A command is taken over, which the model carries out from now on, and then sent. Both return an error for the user.
@@ -51,7 +52,9 @@ class HelperClient {
   bool ready() const { return ready_; }
   const std::string& fault() const { return fault_; }
   // As Head::fault(): also while a new helper is not ready.
-  std::string fault_at_rest() const { return pressed_ ? std::string() : why_idle(); }
+  std::string fault_at_rest();
+  // Whether the head was sent a command that makes it turn now.
+  bool turns(Time now);
   const HeadSetup& setup() const { return setup_; }
 
  private:
@@ -75,6 +78,7 @@ class HelperClient {
   bool pressed_ = false, was_pressed_ = false;  // the emergency stop: now; since the last emergency()
   std::string fault_;                           // of the head, as the helper reports it
   std::string notice_;                          // what the next execute() returns, once
+  std::string loss_;                            // why the helper was lost, until it is reported once
   HeadCommand last_;                            // of the caller
   std::string last_move_;                       // as sent
   Time next_follow_{};

@@ -14,6 +14,7 @@
 
 #include "drivers/helper/helper_client.h"
 #include "drivers/helper/helper_process.h"
+#include "drivers/helper/helper_watch.h"
 #include "drivers/helper/option_words.h"
 #include "drivers/helper/passwords.h"
 #include "drivers/helper/program_check.h"
@@ -26,14 +27,17 @@ using motion::Pose;
 using Clock = std::chrono::steady_clock;
 
 struct Parameters {
-  Time ready_timeout = std::chrono::seconds(5);  // derived: a slow network camera logs in within it
-  Time restart_delay =
-      std::chrono::seconds(1);  // derived: issue "used again when it returns", without a busy loop
+  // From one start to the next; derived: used again when it returns, without a busy loop.
+  Time restart_delay = std::chrono::seconds(1);
+  // From one `alive` to the next at most, however long the helper's timeout is; derived: half of what its answer may take.
+  Time alive_period = std::chrono::milliseconds(250);
   // For a helper that was refused, which has moved nothing; derived: the error comes before users give up.
   std::chrono::milliseconds refused_patience{500};
 };
 constexpr Parameters kParameters;
 constexpr std::string_view kFault = "fault ";  // what such an answer of a helper begins with
+// While a helper ends it is looked at this often.
+constexpr std::chrono::milliseconds kLook{20};
 
 // HeadSetup::options as words; blanks part them, single quotes keep them.
 std::vector<std::string> own_helper(const std::string& driver, const HeadSetup& setup) {
@@ -72,9 +76,10 @@ struct HelperHead::Core {
   std::string name;  // of the helper, for messages
   HelperProcess process;
   LineBuffer lines;
+  HelperWatch watch;
   bool open = false, ended = false, fails = false;
   Time epoch{};  // running time 0 on the steady clock
-  Time next_alive{}, next_start{};
+  Time next_alive{}, started{}, next_start{};
   int wake = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
 
   ~Core() { ::close(wake); }
@@ -82,6 +87,11 @@ struct HelperHead::Core {
   std::string start();
   void start_again();
   void lose(const std::string& why);
+  void lose_hung(const std::string& why);
+  void ask_alive(Time now);
+  void check_hung(Time now);
+  void wait(std::unique_lock<std::mutex>& guard, Time until);
+  void finish(std::unique_lock<std::mutex>& guard);
   bool read_lines();
   void send(const std::string& line);
   void poke() const {
@@ -94,6 +104,8 @@ struct HelperHead::Core {
 std::string HelperHead::Core::start() {
   lines = {};
   next_alive = Time{};
+  started = since_start(Clock::now());
+  watch.begin(started);
   if (std::string wrong = process.start(arguments); !wrong.empty()) return wrong;
   client.begin(running_time());
   return {};
@@ -103,7 +115,7 @@ void HelperHead::Core::start_again() {
   if (const std::string wrong = start(); !wrong.empty()) lose(wrong);
 }
 
-// The helper ended, or does not read any more. A command starts it again after restart_delay.
+// The helper ended. It is started again after restart_delay.
 void HelperHead::Core::lose(const std::string& why) {
   process.hang_up();
   const std::string helper = "the head's helper `" + name + "` ";
@@ -120,7 +132,30 @@ void HelperHead::Core::send(const std::string& line) {
   if (std::exchange(fails, true)) return;  // what answers its last lines
   read_lines();                            // which may contain the reason
   fails = false;
-  lose(!client.fault().empty() ? client.fault() : full ? "it does not read its input" : "it ended");
+  if (full) return lose_hung("it does not read its input");
+  lose(!client.fault().empty() ? client.fault() : "it ended");
+}
+
+// The helper hangs: it may have left its head turning. Another one is started as soon as it is gone, unless it was started
+// within the last restart_delay.
+void HelperHead::Core::lose_hung(const std::string& why) {
+  process.kill();
+  client.lose("the head's helper `" + name + "` hangs: " + why +
+              ". It was killed, and is started again to stop the head");
+  next_start = started + kParameters.restart_delay;
+  answered.notify_all();
+}
+
+void HelperHead::Core::ask_alive(Time now) {
+  next_alive = now + std::min(client.setup().helper_timeout / 4, kParameters.alive_period);
+  send(std::string(kAlive) + '\n');
+  watch.ask();
+}
+
+// Called after the lines that have come were read.
+void HelperHead::Core::check_hung(Time now) {
+  if (!process.running()) return;
+  if (const std::string why = watch.judge(now, client.turns(running_time())); !why.empty()) lose_hung(why);
 }
 
 // False: the helper has closed its end.
@@ -128,37 +163,72 @@ bool HelperHead::Core::read_lines() {
   std::string bytes;
   const bool alive = process.receive(bytes);
   lines.append(bytes);
-  while (const auto text = lines.take()) client.handle(*text, running_time());
+  while (const auto text = lines.take())
+    if (const auto line = client.handle(*text, running_time())) watch.take(*line);
   answered.notify_all();
   return alive;
+}
+
+// Waits for lines, for poke() and until `until` on the steady clock, and reads the lines.
+void HelperHead::Core::wait(std::unique_lock<std::mutex>& guard, Time until) {
+  const auto patience = std::chrono::ceil<std::chrono::milliseconds>(until - since_start(Clock::now()));
+  pollfd fds[2]{{wake, POLLIN, 0}, {process.fd(), POLLIN, 0}};  // a negative descriptor is skipped
+  guard.unlock();
+  ::poll(fds, 2, static_cast<int>(std::clamp<long>(patience.count(), 0, 1000)));
+  guard.lock();
+  std::uint64_t count;
+  [[maybe_unused]] const ssize_t drained = ::read(wake, &count, sizeof count);
+  if (fds[1].revents && process.fd() == fds[1].fd && !read_lines())
+    lose(client.fault().empty() ? "it ended" : client.fault());
 }
 
 void HelperHead::Core::run() {
   std::unique_lock guard(lock);
   while (!ended) {
     const Time now = since_start(Clock::now());
-    if (process.running() && now >= next_alive) {
-      next_alive = now + client.setup().helper_timeout / 4;
-      send("alive\n");
-    }
+    if (process.running() && now >= next_alive) ask_alive(now);
     const Time due = client.serve(running_time());
     // A helper that ended may have left its head turning: only a new one can stop it.
     if (!process.running() && now >= next_start && process.end()) start_again();
-    Time until = process.running() ? next_alive : now + kParameters.restart_delay;
+    Time until = process.running() ? next_alive : std::max(next_start, now + kLook);
+    if (process.running() && watch.waits()) until = std::min(until, now + HelperWatch::kPeriod);
     if (due != motion::kNever) until = std::min(until, due + epoch);
-    const auto wait = std::chrono::ceil<std::chrono::milliseconds>(until - since_start(Clock::now()));
-    pollfd fds[2]{{wake, POLLIN, 0}, {process.fd(), POLLIN, 0}};  // a negative descriptor is skipped
-    guard.unlock();
-    ::poll(fds, 2, static_cast<int>(std::clamp<long>(wait.count(), 0, 1000)));
-    guard.lock();
-    std::uint64_t count;
-    [[maybe_unused]] const ssize_t drained = ::read(wake, &count, sizeof count);
-    if (fds[1].revents && process.fd() == fds[1].fd && !read_lines())
-      lose(client.fault().empty() ? "it ended" : client.fault());
+    wait(guard, until);
+    check_hung(since_start(Clock::now()));
   }
-  send("stop\nquit\n");
+  finish(guard);
+}
+
+// Stops the head and ends the helper. One that hangs just now is replaced by another one, which stops the head.
+void HelperHead::Core::finish(std::unique_lock<std::mutex>& guard) {
+  const auto settle = [&] {
+    while (process.running() && watch.waits()) {
+      wait(guard, since_start(Clock::now()) + kLook);
+      check_hung(since_start(Clock::now()));
+    }
+  };
+  const bool knows = client.ready();
+  send("stop\n");
+  if (knows && process.running()) {
+    ask_alive(since_start(Clock::now()));
+    settle();
+  }
+  if (knows && !process.running()) {
+    guard.unlock();
+    process.finish();
+    guard.lock();
+    start_again();
+    settle();
+    send("stop\n");
+  }
+  send("quit\n");
   guard.unlock();
   process.finish();
+}
+
+std::string helper_name(const std::string& driver, const HeadSetup& setup) {
+  if (driver == "external") return setup.command.substr(0, setup.command.find(' '));
+  return setup.helper.substr(setup.helper.rfind('/') + 1) + " " + driver + " of " + setup.device;
 }
 
 std::vector<std::string> helper_arguments(const std::string& driver, const HeadSetup& setup) {
@@ -186,19 +256,17 @@ std::string HelperHead::check(const HeadSetup& setup) const {
 std::string HelperHead::open(const HeadSetup& setup) {
   close();
   if (std::string wrong = settings_fault(driver_, setup); !wrong.empty()) return wrong;
-  const bool external = driver_ == "external";
   auto core = std::make_shared<Core>();
   std::unique_lock guard(core->lock);
   if (std::string wrong = core->client.open(setup); !wrong.empty()) return wrong;
   core->arguments = helper_arguments(driver_, setup);
-  // Not the whole command: its arguments may hold a password.
-  core->name = external ? setup.command.substr(0, setup.command.find(' ')) : driver_ + " of " + setup.device;
+  core->name = helper_name(driver_, setup);
   core->epoch = since_start(Clock::now());
   if (std::string wrong = core->start(); !wrong.empty()) return wrong;
   core_ = core;
   worker_.emplace([core] { core->run(); });
   const auto over = [&] { return core->client.ready() || !core->client.fault().empty(); };
-  const bool came = core->answered.wait_for(guard, kParameters.ready_timeout, over);
+  const bool came = core->answered.wait_for(guard, HelperWatch::Parameters{}.start, over);
   core->open = core->client.ready();
   const std::string fault = core->client.fault(), name = core->name;
   guard.unlock();

@@ -4,6 +4,8 @@
 //
 // The process of the pipeline may die at any moment; the helper then sees the end of its input and stops the head. It
 // stops it as well when no line has come for helper-timeout. A thread here sends `alive` four times in that time.
+// A helper that hangs (helper_watch.h) may have left its head turning: it is killed, and another one is started at once,
+// which stops the head as it opens it.
 //
 // helper_client.h has what is sent and what becomes of the answers.
 #pragma once
@@ -44,6 +46,8 @@ class HelperHead final : public Head {
   std::optional<Worker> worker_;
 };
 
+// The helper's name for messages. Never its whole command: arguments may hold a password.
+std::string helper_name(const std::string& driver, const HeadSetup& setup);
 // The program that serves the driver of this name, and its arguments.
 std::vector<std::string> helper_arguments(const std::string& driver, const HeadSetup& setup);
 

@@ -106,12 +106,18 @@ void HelperProcess::hang_up() noexcept {
   hung_up_ = std::chrono::steady_clock::now();
 }
 
+void HelperProcess::kill() noexcept {
+  hang_up();
+  if (pid_ > 0) ::kill(-pid_, SIGKILL);
+}
+
 std::optional<std::string> HelperProcess::end() noexcept {
   if (pid_ < 0) return "";
   int status = 0;
   if (::waitpid(pid_, &status, WNOHANG) == 0) {
-    if (fd_ < 0 && !asked_ && std::chrono::steady_clock::now() - hung_up_ >= kPatience)
-      asked_ = ::kill(pid_, SIGTERM) == 0;
+    const auto since = std::chrono::steady_clock::now() - hung_up_;
+    if (fd_ < 0 && !asked_ && since >= kPatience) asked_ = ::kill(-pid_, SIGTERM) == 0;
+    if (fd_ < 0 && since >= kPatience + kKillPatience) kill();
     return std::nullopt;
   }
   pid_ = -1;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A child process joined by a socket pair, which is its standard input and output. The child is never killed: a killed
-// helper cannot switch its motors off. It ends by itself when the socket is closed, as the line protocol demands, and
-// is asked by SIGTERM if it does not.
+// A child process joined by a socket pair, which is its standard input and output. It ends by itself when the socket is
+// closed, as the line protocol demands, and is asked by SIGTERM if it does not. A killed helper cannot switch its motors
+// off: only one that hangs is killed, and the caller starts another. Signals go to its process group: what it has started
+// may hold the device.
 #pragma once
 
 #include <sys/types.h>
@@ -32,13 +33,16 @@ class HelperProcess {
   bool receive(std::string& bytes);
   // Closes the socket: the helper stops its head and ends. Never blocks.
   void hang_up() noexcept;
+  // hang_up(), and kills the child. Never blocks: end() says when it is gone.
+  void kill() noexcept;
   // After hang_up(): how the child ended, in words; nothing while it still runs. Asks it by SIGTERM once kPatience has
-  // passed since hang_up(). Never blocks. An empty text where no child was running.
+  // passed since hang_up(), and kills it after kKillPatience more. Never blocks. An empty text where no child was running.
   std::optional<std::string> end() noexcept;
   // hang_up(), and waits for the end.
   void finish() noexcept;
 
   static constexpr std::chrono::milliseconds kPatience{6000};
+  static constexpr std::chrono::milliseconds kKillPatience{2000};
 
  private:
   int fd_ = -1;

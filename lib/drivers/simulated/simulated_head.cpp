@@ -74,7 +74,7 @@ std::string SimulatedHead::open(const HeadSetup& setup) {
   if (std::string wrong = motion::check_start(setup.limits, setup.pan, setup.tilt); !wrong.empty())
     return wrong;
   setup_ = setup;
-  commanded_ = Time::zero();
+  commanded_ = placed_ = Time::zero();
   next_ = count_ = 1;
   chapters_[0] = {Time::min(), {Plan(setup.pan), setup.pan}, {Plan(setup.tilt), setup.tilt}, {}};
   return {};
@@ -117,17 +117,36 @@ std::string SimulatedHead::obey(const HeadCommand& command) {
   const Chapter& last = nth_last(0);
   if (command.pan == last.command.pan && command.tilt == last.command.tilt)
     return {};  // the command is already being executed
-  return begin(command);
+  HeadCommand next = command;
+  next.time = std::max(next.time, placed_);
+  return begin(next);
 }
 
 std::string SimulatedHead::limit(Time now, const motion::Limits& limits) {
   if (count_ == 0) return "the simulated head is not open";
   HeadCommand again = nth_last(0).command;
-  again.time = commanded_ = std::max(commanded_, now);
+  commanded_ = std::max(commanded_, now);
+  again.time = std::max(commanded_, placed_);
   const motion::Limits before = std::exchange(setup_.limits, limits);
   std::string wrong = begin(again);
   if (!wrong.empty()) setup_.limits = before;
   return wrong;
+}
+
+std::string SimulatedHead::place(Time now, const motion::PanTilt& by, bool holds) {
+  if (count_ == 0) return "the simulated head is not open";
+  const auto shift = [](Leg& leg, double way) {
+    leg.plan.shift(way);
+    leg.camera += way;
+  };
+  for (unsigned n = 0; n < count_; ++n) {
+    shift(nth_last(n).pan, by.pan);
+    shift(nth_last(n).tilt, by.tilt);
+  }
+  HeadCommand again = nth_last(0).command;
+  if (holds) again.pan = again.tilt = {};
+  again.time = placed_ = std::max({placed_, commanded_, now});
+  return begin(again);
 }
 
 // Begins a new trajectory from the head's position at the time when the command takes effect.

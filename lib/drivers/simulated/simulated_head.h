@@ -22,6 +22,10 @@ class SimulatedHead final : public Head {
   std::string command(const HeadCommand& command) override;
   std::string limit(Time now, const motion::Limits& limits) override;
   std::string state(Time time, motion::Pose& pose) override;
+  // The head was found `by` (radians) from where it was: its poses before and after `now` are shifted, and the last
+  // command continues from there, within the limits; holds: it is replaced by a hold. No command: one that is given
+  // earlier than `now` is not stale.
+  std::string place(Time now, const motion::PanTilt& by, bool holds = false);
   bool simulated() const override { return true; }
   bool blocks() const override { return false; }
 
@@ -52,6 +56,7 @@ class SimulatedHead final : public Head {
   std::array<Chapter, kKept> chapters_{};
   unsigned next_ = 0, count_ = 0;  // count 0: closed
   Time commanded_{};               // time of the last command
+  Time placed_{};                  // time of the last place()
 };
 
 }  // namespace cerberus::drivers
