@@ -135,6 +135,10 @@ std::string SimulatedHead::limit(Time now, const motion::Limits& limits) {
 
 std::string SimulatedHead::place(Time now, const motion::PanTilt& by, bool holds) {
   if (count_ == 0) return "the simulated head is not open";
+  HeadCommand again = nth_last(0).command;
+  if (holds) again.pan = again.tilt = {};
+  const bool goes_on = again.pan == nth_last(0).command.pan && again.tilt == nth_last(0).command.tilt;
+  if (goes_on && by.pan == 0 && by.tilt == 0) return {};
   const auto shift = [](Leg& leg, double way) {
     leg.plan.shift(way);
     leg.camera += way;
@@ -143,8 +147,6 @@ std::string SimulatedHead::place(Time now, const motion::PanTilt& by, bool holds
     shift(nth_last(n).pan, by.pan);
     shift(nth_last(n).tilt, by.tilt);
   }
-  HeadCommand again = nth_last(0).command;
-  if (holds) again.pan = again.tilt = {};
   again.time = placed_ = std::max({placed_, commanded_, now});
   return begin(again);
 }
