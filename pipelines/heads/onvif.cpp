@@ -123,9 +123,9 @@ std::string read_word(const OptionWord& word, Settings& s) {
   if (key == "password-text")
     s.head.login.password_text = s.http.password_text = true;
   else if (key == "no-feedback")
-    s.head.feedback = s.head.login.try_absolute = false;
+    s.head.feedback = s.head.absolute = false;
   else if (key == "no-absolute")
-    s.head.login.try_absolute = false;
+    s.head.absolute = false;
   else
     return "\"" + key + "\" is no option of onvif: " + kOptions;
   return has_value ? key + " takes no value" : "";

@@ -29,6 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   reachable(services.ptz, {});
   read_profiles(body);
   read_configuration_options(body);
+  read_nodes(body);
   read_presets(body);
   std::string relates_to;
   for (const ProbeMatch& match : read_probe_matches(*document, relates_to)) read_match(match, "192.0.2.1");

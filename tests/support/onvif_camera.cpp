@@ -161,6 +161,19 @@ double OnvifCamera::pan() {
   advance(now_of(time_));
   return pan_;
 }
+void OnvifCamera::look(double pan, double tilt) {
+  const std::lock_guard guard(lock_);
+  pan_ = pan;
+  tilt_ = tilt;
+}
+void OnvifCamera::allow_moves() {
+  const std::lock_guard guard(lock_);
+  faults_.refuses_moves = false;
+}
+void OnvifCamera::release_status() {
+  const std::lock_guard guard(lock_);
+  faults_.status_at_zero = false;
+}
 double OnvifCamera::zoom() {
   const std::lock_guard guard(lock_);
   return zoom_;
@@ -356,7 +369,7 @@ HttpReply OnvifCamera::profiles(bool media2) {
       "</trt:Profiles></trt:GetProfilesResponse>");
 }
 
-HttpReply OnvifCamera::options() {
+std::string OnvifCamera::spaces() const {
   std::string spaces = space2d("AbsolutePanTiltPositionSpace", SPACES "PositionGenericSpace", 1, 1);
   if (faults_.degrees)
     spaces +=
@@ -368,10 +381,15 @@ HttpReply OnvifCamera::options() {
               "</tt:Max></tt:XRange></tt:AbsoluteZoomPositionSpace>";
   if (faults_.claims_degree_velocity)
     spaces += space2d("ContinuousPanTiltVelocitySpace", SPACES "VelocitySpaceDegrees", kPanSpeed, kTiltSpeed);
-  return envelope("<tptz:GetConfigurationOptionsResponse><tptz:PTZConfigurationOptions><tt:Spaces>" + spaces +
-                  "<tt:PanTiltSpeedSpace><tt:URI>" SPACES
+  return spaces + "<tt:PanTiltSpeedSpace><tt:URI>" SPACES
                   "GenericSpeedSpace</tt:URI><tt:XRange><tt:Min>0</tt:Min><tt:Max>1</tt:Max>"
-                  "</tt:XRange></tt:PanTiltSpeedSpace></tt:Spaces><tt:PTZTimeout><tt:Min>PT0.1S</"
+                  "</tt:XRange></tt:PanTiltSpeedSpace>";
+}
+
+HttpReply OnvifCamera::options() {
+  return envelope("<tptz:GetConfigurationOptionsResponse><tptz:PTZConfigurationOptions><tt:Spaces>" +
+                  spaces() +
+                  "</tt:Spaces><tt:PTZTimeout><tt:Min>PT0.1S</"
                   "tt:Min><tt:Max>PT1M</tt:Max>"
                   "</tt:PTZTimeout></tptz:PTZConfigurationOptions></tptz:GetConfigurationOptionsResponse>");
 }
@@ -388,10 +406,13 @@ HttpReply OnvifCamera::status() {
                     : "";
   if (!faults_.positions && faults_.zooms) content = "<tt:Position>" + zoom + "</tt:Position>";
   if (faults_.positions) {
-    const double x = faults_.degrees ? pan_ : pan_ / kPanEnd, y = faults_.degrees ? tilt_ : tilt_ / kTiltEnd;
-    content = "<tt:Position><tt:PanTilt x=\"" + print(x) + "\" y=\"" + print(y) + "\" space=\"" SPACES +
-              (faults_.degrees ? "SphericalPositionSpaceDegrees" : "PositionGenericSpace") + "\"/>" + zoom +
-              "</tt:Position>";
+    const double pan = faults_.status_at_zero ? 0 : pan_, tilt = faults_.status_at_zero ? 0 : tilt_;
+    const double x = faults_.degrees ? pan : pan / kPanEnd, y = faults_.degrees ? tilt : tilt / kTiltEnd;
+    const std::string right =
+        std::string(SPACES) + (faults_.degrees ? "SphericalPositionSpaceDegrees" : "PositionGenericSpace");
+    const std::string space = faults_.position_space.empty() ? right : faults_.position_space;
+    content = "<tt:Position><tt:PanTilt x=\"" + print(x) + "\" y=\"" + print(y) + "\"" +
+              (space == "none" ? "" : " space=\"" + space + "\"") + "/>" + zoom + "</tt:Position>";
   }
   if (faults_.move_status != MoveStatus::absent)
     content += std::string("<tt:MoveStatus><tt:PanTilt>") + (moving ? "MOVING" : "IDLE") +
@@ -409,8 +430,8 @@ HttpReply OnvifCamera::continuous_move(const xmlNode* request) {
     return fault("InvalidArgVal", "SpaceNotSupported", "space");
   const double x = number(attribute(vector, "x")), y = number(attribute(vector, "y"));
   if (std::abs(x) > 1 || std::abs(y) > 1) return fault("InvalidArgVal", "InvalidVelocity", "velocity");
-  if (!timeout.empty() && faults_.refuses_timeout)
-    return fault("InvalidArgVal", "TimeoutNotSupported", "timeout");
+  if (!timeout.empty() && !faults_.refuses_timeout.empty())
+    return fault("InvalidArgVal", faults_.refuses_timeout, "timeout");
   timeout_ = timeout;
   // The durations that this test sends have seconds only.
   const double seconds = timeout.starts_with("PT") ? number(timeout.substr(2)) : 0;
@@ -467,7 +488,13 @@ HttpReply OnvifCamera::stop(const xmlNode* request) {
 HttpReply OnvifCamera::ptz(const std::string& name, const xmlNode* request) {
   if (name == "GetConfigurationOptions")
     return faults_.refuses_options ? fault("Action", "NotNow", "no options") : options();
-  if (text(child(request, kPtz, "ProfileToken")) != "moving")
+  if (name == "GetNodes" && !faults_.no_nodes)
+    return envelope(
+        "<tptz:GetNodesResponse><tptz:PTZNode "
+        "token=\"node0\"><tt:Name>dome</tt:Name><tt:SupportedPTZSpaces>" +
+        spaces() + "</tt:SupportedPTZSpaces></tptz:PTZNode></tptz:GetNodesResponse>");
+  const std::string profile = text(child(request, kPtz, "ProfileToken"));
+  if (profile != "moving" && !(faults_.moves_any_profile && profile == "still"))
     return fault("InvalidArgVal", "NoProfile", "no such profile");
   if (!faults_.redirects.empty())
     return {.status = 303, .body = {}, .headers = "Location: " + faults_.redirects + "\r\n"};

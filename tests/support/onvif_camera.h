@@ -25,7 +25,10 @@ struct OnvifFaults {
   bool degrees = false;                 // it claims the space of positions in degrees, and reports in it
   bool refuses_absolute = false;        // it claims AbsoluteMove and refuses it
   bool claims_degree_velocity = false;  // it claims VelocitySpaceDegrees and refuses it
-  bool refuses_timeout = false;         // by TimeoutNotSupported
+  std::string refuses_timeout{};        // by a fault of this code: TimeoutNotSupported is the right one
+  std::string
+      position_space{};  // of the positions that it reports; "none": it names none. Empty: the right one
+  bool status_at_zero = false;  // GetStatus always says 0, 0
   bool ignores_timeout = false;
   bool refuses_moves = false;    // all of them
   bool refuses_stop = false;     // by a fault; a ContinuousMove at 0 stops it
@@ -34,7 +37,9 @@ struct OnvifFaults {
   bool bare_ampersand = false;   // in the URI of its services
   bool no_get_services = false;  // only GetCapabilities
   bool media2_only = false;
-  bool no_ptz_profile = false;
+  bool no_ptz_profile = false;              // no profile has a PTZ configuration
+  bool moves_any_profile = false;           // also one without
+  bool no_nodes = false;                    // GetNodes is not there
   bool zooms = false;                       // has a zoom with absolute positions
   double widest = 0, longest = 1;           // of its zoom, in units of its space
   bool refuses_options = false;             // by a fault of GetConfigurationOptions
@@ -68,7 +73,10 @@ class OnvifCamera {
   void lose_stops(int requests);
 
   double pan(), tilt();  // degrees
-  double zoom();         // 0 to 1
+  void look(double pan, double tilt);
+  void allow_moves();     // from now on
+  void release_status();  // likewise GetStatus says where it is
+  double zoom();          // 0 to 1
   void set_zoom(double position);
   void refuse_zoom();     // from now on
   void refuse_options();  // likewise
@@ -84,6 +92,7 @@ class OnvifCamera {
   HttpReply ptz(const std::string& name, const _xmlNode* request);
   HttpReply services(bool capabilities);
   HttpReply profiles(bool media2);
+  std::string spaces() const;
   HttpReply options();
   HttpReply status();
   HttpReply continuous_move(const _xmlNode* request);

@@ -86,7 +86,7 @@ struct OnvifPlant final : HeadPlant {
     drivers::OnvifOptions options;
     must(drivers::onvif::parse_device(camera.device(), options.login.device));
     options.mechanics.full_speed = {OnvifCamera::kPanSpeed, OnvifCamera::kTiltSpeed};
-    options.login.try_absolute = false;
+    options.absolute = false;
     if (adjust) adjust(options);
     head.emplace(std::make_unique<SteppedHttp>(camera, time, answer_time), options);
   }

@@ -15,7 +15,7 @@ inline drivers::OnvifOptions onvif_options(const OnvifCamera& camera) {
   drivers::OnvifOptions options;
   if (!drivers::onvif::parse_device(camera.device(), options.login.device).empty()) std::abort();
   options.mechanics.full_speed = {OnvifCamera::kPanSpeed, OnvifCamera::kTiltSpeed};
-  options.login.try_absolute = false;
+  options.absolute = false;
   return options;
 }
 

@@ -215,23 +215,214 @@ START_TEST(positions_are_reported_and_a_camera_at_its_limit_is_stopped) {
 END_TEST
 
 START_TEST(a_camera_with_absolute_moves_goes_to_an_angle) {
-  Rig rig({.degrees = true}, [](OnvifOptions& options) { options.login.try_absolute = true; });
+  Rig rig({.degrees = true}, [](OnvifOptions& options) { options.absolute = true; });
   assert_text(rig.served.line("ready"), "ready 1 position velocity feedback alive rate 10");
   rig.served.line("pose");
   rig.served.say("move to 30 60 to -5 20");
   ck_assert(rig.served.until(
       [&] { return std::abs(rig.camera.pan() - 30) < .01 && std::abs(rig.camera.tilt() + 5) < .01; }));
-  ck_assert_int_eq(rig.camera.count("AbsoluteMove"), 2);  // one asked whether it works
-  ck_assert_int_eq(rig.camera.count("ContinuousMove"), 0);
+  ck_assert_int_eq(rig.camera.count("AbsoluteMove"), 1);
+  // The first turn is made at a speed, until a report shows it: the next ones are not.
+  const int moves = rig.camera.count("ContinuousMove");
+  rig.served.say("move to -30 60 to 5 20");
+  ck_assert(rig.served.until(
+      [&] { return std::abs(rig.camera.pan() + 30) < .01 && std::abs(rig.camera.tilt() - 5) < .01; }));
+  ck_assert_int_eq(rig.camera.count("AbsoluteMove"), 2);
+  ck_assert_int_eq(rig.camera.count("ContinuousMove"), moves);
 }
 END_TEST
 
 START_TEST(a_camera_that_claims_absolute_moves_and_refuses_them_is_turned_at_speeds) {
-  OnvifCamera camera({.degrees = true, .refuses_absolute = true});
-  OnvifOptions options = onvif_options(camera);
-  options.login.try_absolute = true;
-  OnvifRig rig(options);
-  assert_text(rig.served.line("ready"), "ready 1 velocity feedback alive rate 10");
+  Rig rig({.degrees = true, .refuses_absolute = true},
+          [](OnvifOptions& options) { options.absolute = true; });
+  assert_text(rig.served.line("ready"), "ready 1 position velocity feedback alive rate 10");
+  rig.served.say("move to 30 60 to -5 20");
+  ck_assert(rig.served.until(
+      [&] { return std::abs(rig.camera.pan() - 30) < .6 && std::abs(rig.camera.tilt() + 5) < .6; }));
+  ck_assert(rig.served.until([&] { return rig.camera.speed() == 0; }));
+  ck_assert_int_eq(rig.camera.count("AbsoluteMove"), 0);
+}
+END_TEST
+
+// Where its motors are when it is switched on is not where it says that it is.
+START_TEST(a_camera_that_always_reports_zero_is_not_turned_at_the_start) {
+  for (const bool degrees : {false, true}) {
+    OnvifFaults faults;
+    faults.degrees = degrees;
+    faults.status_at_zero = true;
+    OnvifPlant plant(
+        faults,
+        [](OnvifOptions& options) {
+          with_range(options);
+          options.absolute = true;
+        },
+        2ms);
+    plant.camera.look(40, 10);
+    SteppedHelper served(plant);
+    served.line("pose");
+    served.run(3s);
+    ck_assert(plant.camera.pan() == 40 && plant.camera.tilt() == 10);
+    for (const char* move : {"ContinuousMove", "AbsoluteMove", "RelativeMove", "GotoPreset"})
+      ck_assert_int_eq(plant.camera.count(move), 0);
+  }
+}
+END_TEST
+
+START_TEST(positions_that_do_not_follow_the_camera_are_not_believed) {
+  for (const bool absolute : {false, true}) {
+    std::string warning;
+    OnvifFaults faults;
+    faults.status_at_zero = true;
+    OnvifPlant plant(
+        faults,
+        [&](OnvifOptions& options) {
+          with_range(options);
+          options.absolute = absolute;
+          options.warn = [&](const std::string& text) { warning = text; };
+        },
+        2ms);
+    SteppedHelper served(plant);
+    served.line("ready");
+    served.say("move at 10 hold");
+    ck_assert(served.until([&] { return !warning.empty(); }));
+    ck_assert_msg(
+        warning.ends_with(
+            "turns and reports the same position all the time: its positions are not used (no-feedback)"),
+        "%s", warning.c_str());
+    ck_assert_double_le(plant.camera.pan(), 20);
+    // From now on the pipeline reckons, and so does the driver: to a limit, and to an angle.
+    const std::string speeds = served.line("speeds");
+    ck_assert_msg(speeds.starts_with("speeds 10 0 "), "%s", speeds.c_str());
+    served.say("limits -60 60 -10 10");
+    served.run(100ms);
+    ck_assert(served.until([&] { return plant.camera.speed() == 0; }, "move at 20 hold"));
+    ck_assert_double_eq_tol(plant.camera.pan(), 60, 3);
+    if (absolute) {
+      ck_assert(
+          served.until([&] { return std::abs(plant.camera.pan() + 30) < 3 && plant.camera.speed() == 0; },
+                       "move to -30 40 to 0 20"));
+      ck_assert_int_eq(plant.camera.count("AbsoluteMove"), 0);
+    }
+    assert_text(plant.device().fault(), "");
+    // A camera whose reports move after all is believed again.
+    plant.camera.release_status();
+    ck_assert(served.until([&] { return plant.camera.speed() < -9; }, "move at -10 hold"));
+    std::string pose;
+    for (int i = 0; i < 100 && !pose.starts_with("pose -"); ++i) pose = served.line("pose");
+    ck_assert_msg(pose.starts_with("pose -"), "%s", pose.c_str());
+  }
+}
+END_TEST
+
+START_TEST(a_camera_that_refuses_a_timeout_by_any_fault_is_driven_without) {
+  for (const char* code :
+       {"TimeoutNotSupported", "InvalidArgs", "InvalidVelocity", "ActionNotSupported", "Oops"}) {
+    std::string warning;
+    OnvifFaults faults;
+    faults.refuses_timeout = code;
+    Rig rig(faults,
+            [&](OnvifOptions& options) { options.warn = [&](const std::string& text) { warning = text; }; });
+    rig.served.line("ready");
+    ck_assert(
+        rig.served.until([&] { return rig.camera.speed() > 44 && !warning.empty(); }, "move at 45 hold"));
+    assert_text(rig.camera.timeout(), "");
+    ck_assert_msg(
+        warning.ends_with("takes no Timeout in a move: if cerberus-head is killed, nothing stops it"), "%s",
+        warning.c_str());
+    assert_text(rig.plant.device().fault(), "");
+    // The camera's own default may end a move: it is sent again.
+    const int moves = rig.camera.count("ContinuousMove");
+    for (int i = 0; i < 200; ++i) {
+      rig.served.say("move at 45 hold");
+      rig.served.run(10ms);
+    }
+    ck_assert_int_ge(rig.camera.count("ContinuousMove"), moves + 3);
+    rig.served.say("stop");
+    ck_assert(rig.served.until([&] { return rig.camera.speed() == 0; }));
+    // Silence stops it as any camera.
+    ck_assert(rig.served.until([&] { return rig.camera.speed() > 44; }, "move at 45 hold"));
+    rig.served.run(6s);
+    ck_assert_double_eq(rig.camera.speed(), 0);
+  }
+}
+END_TEST
+
+START_TEST(a_camera_that_refuses_moves_for_another_reason_keeps_its_timeout) {
+  OnvifFaults faults;
+  faults.refuses_moves = true;
+  Rig rig(faults);
+  rig.served.line("ready");
+  rig.served.say("move at 45 hold");
+  ck_assert(!rig.served.line("fault").empty());
+  rig.camera.allow_moves();
+  ck_assert(!rig.served.line("recovered").empty());
+  ck_assert(rig.served.until([&] { return rig.camera.speed() > 44; }, "move at 45 hold"));
+  assert_text(rig.camera.timeout(), "PT1S");
+}
+END_TEST
+
+START_TEST(a_range_is_used_or_said_not_to_be) {
+  const struct {
+    const char* why;  // nothing: it is used
+    OnvifFaults faults;
+    bool feedback = true;
+  } cases[] = {
+      {nullptr, {}},
+      {nullptr, {.position_space = "none"}},
+      {nullptr, {.position_space = "none", .refuses_options = true}},
+      {"reports its position in degrees", {.degrees = true}},
+      {"reports no position", {.positions = false}},
+      {"reports its position in a space of its own (urn:steps)", {.position_space = "urn:steps"}},
+      {"has no-feedback", {}, false},
+  };
+  for (const auto& one : cases) {
+    std::string warnings;
+    Rig rig(one.faults, [&](OnvifOptions& options) {
+      with_range(options);
+      options.feedback = one.feedback;
+      options.warn = [&](const std::string& text) { warnings += text; };
+    });
+    const bool reports = !one.why || one.faults.degrees;
+    assert_text(rig.served.line("ready"),
+                reports ? "ready 1 velocity feedback alive rate 10" : "ready 1 velocity alive rate 10");
+    if (one.why)
+      ck_assert_msg(warnings.ends_with(std::string(one.why) + ": range= is not used"), "%s",
+                    warnings.c_str());
+    else
+      assert_text(warnings, "");
+    if (!reports) continue;
+    ck_assert(rig.served.until([&] { return rig.camera.pan() > 34; }, "move at 20 hold"));
+    ck_assert(rig.served.until([&] { return rig.camera.speed() == 0; }, "stop"));
+    rig.served.run(1s);
+    std::string pose;
+    for (int i = 0; i < 20; ++i) pose = rig.served.line("pose");
+    ck_assert_double_eq_tol(std::stod(pose.substr(5)), rig.camera.pan(), .1);
+  }
+}
+END_TEST
+
+START_TEST(a_profile_without_a_ptz_configuration_is_used_where_it_or_its_node_is_named) {
+  for (const char* name : {"still", "main", "moving", "node0", "dome"})
+    for (const bool nodes : {true, false}) {
+      const bool is_node = *name == 'n' || *name == 'd';
+      OnvifFaults faults;
+      faults.no_ptz_profile = faults.moves_any_profile = true;
+      faults.no_nodes = !nodes;
+      Rig rig(faults, [&](OnvifOptions& options) {
+        with_range(options);
+        options.login.profile = name;
+      });
+      if (is_node && !nodes) {
+        const std::string fault = rig.served.line("fault");
+        ck_assert_msg(fault.find("it has still, moving") != std::string::npos, "%s", fault.c_str());
+        continue;
+      }
+      assert_text(rig.served.line("ready"), "ready 1 velocity feedback alive rate 10");
+      ck_assert(rig.served.until([&] { return rig.camera.speed() > 44; }, "move at 45 hold"));
+      const std::string profile = *name == 'm' ? "moving" : "still";
+      ck_assert(rig.camera.requests().back().find("<ProfileToken>" + profile + "</ProfileToken>") !=
+                std::string::npos);
+    }
 }
 END_TEST
 
@@ -416,6 +607,12 @@ int main() {
        positions_are_reported_and_a_camera_at_its_limit_is_stopped,
        a_camera_with_absolute_moves_goes_to_an_angle,
        a_camera_that_claims_absolute_moves_and_refuses_them_is_turned_at_speeds,
+       a_camera_that_always_reports_zero_is_not_turned_at_the_start,
+       positions_that_do_not_follow_the_camera_are_not_believed,
+       a_camera_that_refuses_a_timeout_by_any_fault_is_driven_without,
+       a_camera_that_refuses_moves_for_another_reason_keeps_its_timeout,
+       a_range_is_used_or_said_not_to_be,
+       a_profile_without_a_ptz_configuration_is_used_where_it_or_its_node_is_named,
        a_camera_without_positions_finds_its_reference_by_a_preset,
        a_preset_that_is_not_there_is_a_fault,
        a_preset_that_is_not_listed_is_named_with_those_that_are,

@@ -222,6 +222,22 @@ START_TEST(a_status_may_lack_everything_or_hold_what_is_no_number) {
 }
 END_TEST
 
+START_TEST(nodes_are_read_with_what_they_offer) {
+  const auto nodes = read_nodes(body_of(soap(
+      "<tptz:GetNodesResponse><tptz:PTZNode token=\"n1\" FixedHomePosition=\"true\"><tt:Name>dome</tt:Name>"
+      "<tt:SupportedPTZSpaces><tt:ContinuousPanTiltVelocitySpace><tt:URI>urn:v</tt:URI>"
+      "<tt:XRange><tt:Min>-2</tt:Min><tt:Max>2</tt:Max></tt:XRange></tt:ContinuousPanTiltVelocitySpace>"
+      "</tt:SupportedPTZSpaces></tptz:PTZNode><tptz:PTZNode token=\"n2\"/></tptz:GetNodesResponse>")));
+  ck_assert_uint_eq(nodes.size(), 2);
+  assert_text(nodes[0].token, "n1");
+  assert_text(nodes[0].name, "dome");
+  ck_assert_uint_eq(nodes[0].options.velocities.size(), 1);
+  ck_assert(nodes[0].options.velocities[0].x.to == 2 && nodes[0].options.positions.empty());
+  assert_text(nodes[1].token, "n2");
+  ck_assert(nodes[1].options.velocities.empty());
+}
+END_TEST
+
 START_TEST(presets_and_probe_matches_are_read) {
   const auto presets = read_presets(body_of(soap(
       "<tptz:GetPresetsResponse><tptz:Preset token=\"1\"><tt:Name>door</tt:Name></tptz:Preset><tptz:Preset/>"
@@ -388,8 +404,8 @@ int main() {
        xml_with_a_document_type_or_too_much_of_it_is_refused, a_bare_ampersand_is_taken_for_itself,
        the_cameras_time_is_read, faults_have_their_innermost_code_and_a_printable_reason,
        services_are_read_from_both_answers, a_status_may_lack_everything_or_hold_what_is_no_number,
-       presets_and_probe_matches_are_read, cameras_are_found_by_the_answers_to_the_own_probe,
-       a_camera_that_was_only_found_is_sent_no_login,
+       nodes_are_read_with_what_they_offer, presets_and_probe_matches_are_read,
+       cameras_are_found_by_the_answers_to_the_own_probe, a_camera_that_was_only_found_is_sent_no_login,
        requests_go_to_the_named_host_whatever_the_camera_claims,
        degrees_become_the_units_of_the_cameras_spaces, fingerprints_are_read_in_every_notation});
 }

@@ -78,6 +78,16 @@ void SpeedReckoning::expire(Time now) {
   in_force_ = {.from = in_force_.until};
 }
 
+motion::PanTilt SpeedReckoning::position(Time now) const {
+  const motion::Pose here = reckoned_.at(now);
+  return {here.pan.position, here.tilt.position};
+}
+
+void SpeedReckoning::report_again(Time now) {
+  changes_.front() = {reckoned_.last(), now};
+  changed_ = 1;
+}
+
 std::optional<SpeedsLine> SpeedReckoning::take_speeds(Time now) {
   if (changed_ == 0) return std::nullopt;
   const Change oldest = changes_.front();
@@ -97,9 +107,9 @@ motion::PanTilt SpeedReckoning::confined(const motion::PanTilt& speed, const mot
     const bool beyond = v > 0 ? position >= within.to - margin : position <= within.from + margin;
     return beyond ? 0 : v;
   };
-  const motion::Pose here = reckoned_.at(now);
-  return {axis(speed.pan, measured.pan, here.pan.position, limits.pan),
-          axis(speed.tilt, measured.tilt, here.tilt.position, limits.tilt)};
+  const motion::PanTilt here = position(now);
+  return {axis(speed.pan, measured.pan, here.pan, limits.pan),
+          axis(speed.tilt, measured.tilt, here.tilt, limits.tilt)};
 }
 
 }  // namespace cerberus::drivers

@@ -44,6 +44,10 @@ class SpeedReckoning {
   void expire(Time now);
   // The device was found to be at `at` (radians).
   void set_reference(const motion::PanTilt& at, Time now) { reckoned_.place(now, at); }
+  // Where the head is by the speeds that it was sent, radians.
+  motion::PanTilt position(Time now) const;
+  // take_speeds() returns the speeds in force, whatever it has returned before.
+  void report_again(Time now);
   // The oldest change of the speeds that was not taken yet; nothing: there is none.
   std::optional<SpeedsLine> take_speeds(Time now);
   // speed (radians a second), or 0 where it would lead beyond a limit. measured: the position that the device reported

@@ -137,10 +137,9 @@ std::vector<Profile> read_profiles(XmlElement body) {
   return profiles;
 }
 
-std::optional<PtzOptions> read_configuration_options(XmlElement body) {
-  const XmlElement options = body.child("GetConfigurationOptionsResponse").child("PTZConfigurationOptions");
-  if (!options) return std::nullopt;
-  const XmlElement spaces = options.child("Spaces"), timeout = options.child("PTZTimeout");
+namespace {
+
+PtzOptions read_options(XmlElement spaces, XmlElement timeout) {
   std::optional<Space> zoom;
   if (const auto found = read_spaces(spaces, "AbsoluteZoomPositionSpace"); !found.empty()) {
     zoom = found.front();
@@ -156,6 +155,22 @@ std::optional<PtzOptions> read_configuration_options(XmlElement body) {
                     .zoom = std::move(zoom),
                     .least_timeout = read_duration(timeout.child("Min").text()),
                     .most_timeout = read_duration(timeout.child("Max").text())};
+}
+
+}  // namespace
+
+std::optional<PtzOptions> read_configuration_options(XmlElement body) {
+  const XmlElement options = body.child("GetConfigurationOptionsResponse").child("PTZConfigurationOptions");
+  if (!options) return std::nullopt;
+  return read_options(options.child("Spaces"), options.child("PTZTimeout"));
+}
+
+std::vector<PtzNode> read_nodes(XmlElement body) {
+  std::vector<PtzNode> nodes;
+  for (const XmlElement& node : body.child("GetNodesResponse").children("PTZNode"))
+    nodes.push_back({node.attribute("token"), node.child("Name").text(),
+                     read_options(node.child("SupportedPTZSpaces"), {})});
+  return nodes;
 }
 
 std::optional<PtzStatus> read_status(XmlElement body) {

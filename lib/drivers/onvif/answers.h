@@ -43,7 +43,7 @@ Services read_services(XmlElement body);
 struct Profile {
   std::string token;
   std::string name;
-  std::string configuration;  // token of its PTZ configuration; empty: it cannot pan or tilt
+  std::string configuration;  // token of its PTZ configuration; empty: it has none
 };
 // Of either media service.
 std::vector<Profile> read_profiles(XmlElement body);
@@ -62,6 +62,13 @@ struct PtzOptions {
   std::optional<std::chrono::milliseconds> least_timeout, most_timeout;  // of ContinuousMove
 };
 std::optional<PtzOptions> read_configuration_options(XmlElement body);
+
+// What pans and tilts, with what it offers whatever its configuration is.
+struct PtzNode {
+  std::string token, name;
+  PtzOptions options;  // without timeouts
+};
+std::vector<PtzNode> read_nodes(XmlElement body);
 
 struct PtzStatus {
   std::optional<Space>

@@ -24,6 +24,9 @@ void Login::begin(Time now, Time timeout, bool again) {
   services_ = {};
   configuration_.clear();
   seen_profiles_.clear();
+  other_profiles_.clear();
+  first_profile_.clear();
+  named_profile_.clear();
   wrong_.clear();
   warning_.clear();
   again_ = again;
@@ -67,6 +70,8 @@ void Login::send(Step step, Time now) {
         return get_profiles();
       case Step::profiles_media2:
         return get_profiles_media2();
+      case Step::nodes:
+        return get_nodes();
       case Step::options:
         return get_configuration_options(configuration_);
       case Step::stop:
@@ -76,12 +81,9 @@ void Login::send(Step step, Time now) {
       case Step::status:
         return get_status(camera_.profile);
       case Step::zoom:
-        return zoom_request(camera_, options_.zoom);
-      case Step::absolute:
         break;
     }
-    const Space& at = *camera_.status->position;
-    return absolute_move(camera_.profile, {at.x.from, at.y.from, at.uri}, std::nullopt);
+    return zoom_request(camera_, options_.zoom);
   };
   const Address to = step <= Step::capabilities      ? options_.device
                      : step == Step::profiles        ? service(services_.media)
@@ -94,16 +96,17 @@ void Login::send(Step step, Time now) {
 
 bool Login::choose(const std::vector<Profile>& profiles) {
   for (const Profile& profile : profiles) {
-    const bool named =
-        options_.profile.empty() || options_.profile == profile.token || options_.profile == profile.name;
-    if (!profile.configuration.empty() && named) {
+    const bool named = options_.profile == profile.token || options_.profile == profile.name;
+    if (!profile.configuration.empty() && (named || options_.profile.empty())) {
       camera_.profile = profile.token;
       configuration_ = profile.configuration;
       return true;
     }
-    if (profile.configuration.empty()) continue;
-    if (!seen_profiles_.empty()) seen_profiles_.append(", ");
-    seen_profiles_.append(profile.token);
+    if (first_profile_.empty()) first_profile_ = profile.token;
+    if (named && named_profile_.empty()) named_profile_ = profile.token;
+    std::string& seen = profile.configuration.empty() ? other_profiles_ : seen_profiles_;
+    if (!seen.empty()) seen.append(", ");
+    seen.append(profile.token);
   }
   return false;
 }
@@ -121,21 +124,52 @@ void Login::after_services(const SoapAnswer& answer, Time now) {
 void Login::after_profiles(const SoapAnswer& answer, Time now) {
   if (choose(read_profiles(answer.body))) return send(Step::options, now);
   if (step_ == Step::profiles && !services_.media2.empty()) return send(Step::profiles_media2, now);
-  if (seen_profiles_.empty()) return fail("has no profile with a PTZ configuration: it cannot pan and tilt");
-  fail("has no profile \"" + options_.profile + "\" that can pan and tilt; it has " + seen_profiles_);
+  // Some cameras turn without: their nodes say what they offer, where a profile or a node is named.
+  if (!options_.profile.empty() && !first_profile_.empty()) return send(Step::nodes, now);
+  fail("has no profile with a PTZ configuration: it cannot pan and tilt" +
+       (other_profiles_.empty()
+            ? std::string()
+            : ", or does so without: then name one of its profiles (profile=): " + other_profiles_));
+}
+
+void Login::after_nodes(const SoapAnswer& answer, Time now) {
+  const std::vector<PtzNode> nodes = read_nodes(answer.body);
+  auto node = nodes.begin();
+  std::string seen;
+  if (named_profile_.empty())
+    for (node = nodes.begin();
+         node != nodes.end() && node->token != options_.profile && node->name != options_.profile; ++node)
+      seen.append(seen.empty() ? "" : ", ").append(node->token);
+  const std::string none = "has no profile \"" + options_.profile + "\" that can pan and tilt";
+  if (named_profile_.empty() && node == nodes.end())
+    return fail(none + "; it has " + (seen_profiles_.empty() ? other_profiles_ : seen_profiles_) +
+                (seen.empty() ? "" : ", and the nodes " + seen));
+  camera_.profile = named_profile_.empty() ? first_profile_ : named_profile_;
+  if (node != nodes.end()) camera_.options = node->options;
+  if (!seen_profiles_.empty())
+    warning_ = "has no PTZ configuration in the profile \"" + camera_.profile +
+               "\", which is used all the same; it has one in " + seen_profiles_;
+  after_spaces(answer.good() ? "" : "GetNodes (" + (answer.fault ? answer.fault->text() : answer.wrong) + ")",
+               now);
 }
 
 void Login::after_options(const SoapAnswer& answer, Time now) {
   camera_.options = read_configuration_options(answer.body).value_or(PtzOptions{});
+  after_spaces(answer.good()
+                   ? ""
+                   : "GetConfigurationOptions (" + (answer.fault ? answer.fault->text() : answer.wrong) + ")",
+               now);
+}
+
+// unknown: the request that would say what the camera offers and was not answered, for a message; empty: none.
+void Login::after_spaces(const std::string& unknown, Time now) {
   if (options_.zoom < 0 || camera_.options.zoom) return send(Step::stop, now);
-  const std::string why = answer.good()
+  const std::string why = unknown.empty()
                               ? "has no absolute zoom in the profile \"" + camera_.profile +
                                     "\": its zoom cannot be kept (lock-zoom). Name another profile "
-                                    "(profile=), or set the zoom at the "
-                                    "camera"
-                              : "does not answer GetConfigurationOptions (" +
-                                    (answer.fault ? answer.fault->text() : answer.wrong) +
-                                    "), which would say how its zoom is set: it cannot be kept (lock-zoom)";
+                                    "(profile=), or set the zoom at the camera"
+                              : "does not answer " + unknown +
+                                    ", which would say how its zoom is set: it cannot be kept (lock-zoom)";
   if (goes_on_without_zoom(why)) send(Step::stop, now);
 }
 
@@ -204,6 +238,8 @@ void Login::handle(const SoapAnswer& answer, Time now) {
     case Step::profiles:
     case Step::profiles_media2:
       return after_profiles(answer, now);
+    case Step::nodes:
+      return after_nodes(answer, now);
     case Step::options:
       return after_options(answer, now);
     case Step::stop:
@@ -216,12 +252,6 @@ void Login::handle(const SoapAnswer& answer, Time now) {
         return fail("has a PTZ service that does not work: " + answer.wrong);
       }
       camera_.status = read_status(answer.body);
-      if (options_.try_absolute && camera_.status && camera_.status->position &&
-          !camera_.options.positions.empty())
-        return send(Step::absolute, now);
-      return set_zoom(now);
-    case Step::absolute:
-      camera_.absolute = answer.good();
       return set_zoom(now);
     case Step::zoom:
       if (!answer.good())

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What happens between an address and the first move: the camera's clock, its services, the profile that can pan and tilt,
-// what its PTZ configuration offers, a Stop, the position, whether AbsoluteMove works (it is sent to where it is), and the
-// zoom where it is to be kept.
+// what its PTZ configuration offers, a Stop, the position, and the zoom where it is to be kept. Nothing of it turns the
+// camera: a position that it reports may be false.
 #pragma once
 
 #include <string>
@@ -12,11 +12,12 @@ namespace cerberus::drivers::onvif {
 
 struct LoginOptions {
   Address device;
-  std::string profile;         // token or name; empty: the first that can pan and tilt
+  // Token or name of a profile, which is used also without a PTZ configuration, or of a node of the PTZ service, which is
+  // reached by the first profile; empty: the first profile with a PTZ configuration.
+  std::string profile;
   bool password_text = false;  // passwords in clear also without TLS
-  bool try_absolute = true;
-  std::string preset;  // token or name of a preset to look up; empty: none
-  double zoom = -1;    // position of the zoom to keep, 0 to 1; negative: whatever it is
+  std::string preset;          // token or name of a preset to look up; empty: none
+  double zoom = -1;            // position of the zoom to keep, 0 to 1; negative: whatever it is
 };
 
 // What the camera is, after a login.
@@ -26,7 +27,6 @@ struct Camera {
   PtzOptions options;
   std::optional<PtzStatus> status;  // nothing: it has none
   std::string preset;               // token of the preset that was looked up
-  bool absolute = false;            // it takes an AbsoluteMove to its own position
 };
 
 // Sets the zoom of a camera whose options have one. position: 0 to 1.
@@ -46,7 +46,7 @@ class Login {
   void handle(const SoapAnswer& answer, Time now);
   // After the end: why it failed; empty: it is done.
   const std::string& wrong() const { return wrong_; }
-  // Of a login that is done: what is wrong with its zoom; empty: nothing.
+  // Of a login that is done: what is wrong and keeps no camera from turning; empty: nothing.
   const std::string& warning() const { return warning_; }
   // It failed because the camera refused the user.
   bool refused() const { return refused_; }
@@ -59,11 +59,11 @@ class Login {
     capabilities,
     profiles,
     profiles_media2,
+    nodes,
     options,
     stop,
     presets,
     status,
-    absolute,
     zoom
   };
 
@@ -71,11 +71,13 @@ class Login {
   void fail(std::string why);
   // False: the login has failed of it.
   bool goes_on_without_zoom(std::string why);
-  // False: no profile of these can pan and tilt.
+  // False: no profile of these can pan and tilt, or none of the name that is asked for.
   bool choose(const std::vector<Profile>& profiles);
   void after_services(const SoapAnswer& answer, Time now);
   void after_profiles(const SoapAnswer& answer, Time now);
+  void after_nodes(const SoapAnswer& answer, Time now);
   void after_presets(const SoapAnswer& answer, Time now);
+  void after_spaces(const std::string& unknown, Time now);
   void after_options(const SoapAnswer& answer, Time now);
   void set_zoom(Time now);
   Address service(const std::string& claimed) const;
@@ -87,7 +89,10 @@ class Login {
   unsigned id_ = 0;
   Time timeout_{}, sent_{};
   Services services_;
-  std::string configuration_, seen_profiles_;
+  std::string configuration_;
+  std::string seen_profiles_;                  // those that can pan and tilt, for messages
+  std::string other_profiles_;                 // those without a PTZ configuration, likewise
+  std::string first_profile_, named_profile_;  // tokens; the latter is the one that is asked for
   std::string wrong_, warning_;
   bool again_ = false;
   bool refused_ = false;

@@ -66,6 +66,9 @@ Request get_profiles_media2() {
 Request get_configuration_options(std::string_view configuration) {
   return request(kPtz, "GetConfigurationOptions", element("ConfigurationToken", configuration));
 }
+Request get_nodes() {
+  return request(kPtz, "GetNodes");
+}
 Request get_status(std::string_view profile) {
   return request(kPtz, "GetStatus", element("ProfileToken", profile));
 }

@@ -39,6 +39,7 @@ Request get_profiles();
 Request get_profiles_media2();
 // PTZ service. Tokens are those of the camera's answers.
 Request get_configuration_options(std::string_view configuration);
+Request get_nodes();
 Request get_status(std::string_view profile);
 Request get_presets(std::string_view profile);
 // timeout: after which the camera shall stop by itself; nothing: the camera's default.

@@ -97,7 +97,7 @@ void OnvifHead::on_sent(const Angles& velocity, Time now) {
   sent_ = now;
   moved_ = true;
   reckoned_.set_speeds({radians(velocity.pan), radians(velocity.tilt)}, now,
-                       timeout_refused_ ? motion::kNever : now + camera_timeout());
+                       timeouts_ == Timeouts::given ? now + camera_timeout() : motion::kNever);
 }
 
 void OnvifHead::begin_stop(Time now) {
@@ -143,6 +143,10 @@ onvif::PanTilt OnvifHead::wanted_velocity(Time now) const {
     const double seconds = motion::seconds(now - position_time_);
     pan = position_->pan + sent_velocity_.pan * seconds;
     tilt = position_->tilt + sent_velocity_.tilt * seconds;
+  } else if (!positions_ && keeps_limits_) {  // it has lost them: what was promised is kept by reckoning
+    const motion::PanTilt here = reckoned_.position(now);
+    pan = degrees(here.pan);
+    tilt = degrees(here.tilt);
   }
   // A head that goes to angles keeps the limits itself, for which it needs its position; the others are sent speeds
   // that brake before them. Without a position the reckoned one stops the camera a little beyond.
@@ -174,13 +178,14 @@ void OnvifHead::send_absolute(Time now) {
                                                 camera_.options, options_.mechanics)),
            now);
   sent_angle_ = true;
+  tries_ = false;
   on_sent({}, now);
 }
 
 void OnvifHead::send_move(Time now) {
   if (!online_ || login_.busy() || stopping_ || now < move_refused_until_) return;
   if (homing_.busy()) return send_home(now);
-  if (absolute_ && goes_to_an_angle() && has_position(now)) return send_absolute(now);
+  if (absolute_ && reports_.proven() && goes_to_an_angle() && has_position(now)) return send_absolute(now);
   const onvif::PanTilt vector = wanted_velocity(now);
   const Angles wanted = onvif::from_velocity(vector, options_.mechanics);
   if (wanted.pan == 0 && wanted.tilt == 0) {
@@ -193,12 +198,14 @@ void OnvifHead::send_move(Time now) {
                     std::abs(wanted.tilt - sent_velocity_.tilt) < kParameters.least_change &&
                     (wanted.pan == 0) == (sent_velocity_.pan == 0) &&
                     (wanted.tilt == 0) == (sent_velocity_.tilt == 0);
-  const Time refresh = timeout_refused_ ? motion::kNever : camera_timeout() / 2;
+  // Also without a Timeout: the camera's own default may end a move.
+  const Time refresh = camera_timeout() / 2;
   if (moved_ && now - sent_ < (same ? refresh : Time(static_cast<Time::rep>(1e9 / kParameters.rate)))) return;
   std::optional<std::chrono::milliseconds> timeout;
-  if (!timeout_refused_) timeout = std::chrono::ceil<std::chrono::milliseconds>(camera_timeout());
+  if (timeouts_ == Timeouts::given) timeout = std::chrono::ceil<std::chrono::milliseconds>(camera_timeout());
   move_ = send(onvif::continuous_move(camera_.profile, vector, timeout), now);
   sent_angle_ = false;
+  tries_ = timeouts_ == Timeouts::tried_without;
   on_sent(wanted, now);
 }
 
@@ -212,6 +219,7 @@ void OnvifHead::send_home(Time now) {
   move_ = send(options_.home ? onvif::goto_home_position(camera_.profile)
                              : onvif::goto_preset(camera_.profile, camera_.preset),
                now);
+  tries_ = false;
   homing_.on_sent(now);
   moved_ = true;
 }
@@ -224,7 +232,8 @@ std::optional<HomedLine> OnvifHead::take_homed(Time now) {
 
 std::optional<SpeedsLine> OnvifHead::take_speeds(Time now) {
   const auto speeds = reckoned_.take_speeds(now);
-  return positions_ ? std::nullopt : speeds;
+  told_speeds_ = told_speeds_ || (!positions_ && speeds);
+  return told_speeds_ ? speeds : std::nullopt;
 }
 
 void OnvifHead::send_inquiry(Time now) {

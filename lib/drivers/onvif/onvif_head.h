@@ -3,14 +3,15 @@
 //
 // No call waits for the camera, but open(). At most one move and one position inquiry are on their way; the newest move
 // waits for the answer to the last one. A move carries a Timeout, after which the camera shall stop by itself, and is
-// sent again before it is over; nothing relies on that.
+// sent again before it is over; nothing relies on that. A camera that refuses such a move is sent it once without.
 //
 // Stop goes out at once, whatever is on its way, and again until the camera has acknowledged one that was sent when no
 // move was on its way: cameras obey requests of two connections in any order. A camera that reports that it still moves
 // after that is sent Stop again.
 //
 // A camera without positions is reckoned to turn as it was sent last, until the Stop that it has acknowledged was sent or
-// its Timeout is over.
+// its Timeout is over. So is one whose reports do not follow its turns (report_watch.h); before one has, no angle is
+// sent as such.
 //
 // A camera that does not answer, or refuses connections, is a fault. It is sent Stop and a new login until it answers;
 // then it stands until the next move.
@@ -27,6 +28,7 @@
 #include "drivers/onvif/approach.h"
 #include "drivers/onvif/homing.h"
 #include "drivers/onvif/login.h"
+#include "drivers/onvif/report_watch.h"
 #include "drivers/onvif/spaces.h"
 #include "drivers/onvif/zoom_lock.h"
 
@@ -36,6 +38,7 @@ struct OnvifOptions {
   onvif::LoginOptions login;
   onvif::Mechanics mechanics;
   bool feedback = true;  // use the positions that the camera reports
+  bool absolute = true;  // go to angles by AbsoluteMove, where the camera has it
   // A camera without positions finds a lost reference by its home position, or by the preset of the login, which looks
   // straight ahead.
   bool home = false;
@@ -98,7 +101,12 @@ class OnvifHead final : public HeadDevice {
   void on_login(Time now);
   void on_stop(const SentStop& sent, const onvif::SoapAnswer& answer, Time now);
   void on_move(const onvif::SoapAnswer& answer, Time now);
+  // A move of this kind was refused by this fault: it is sent again in another form, or given up.
+  void on_refused_move(bool angle, const onvif::Fault& fault, Time now);
   void on_status(const onvif::SoapAnswer& answer, Time now);
+  void on_position(const onvif::Angles& at, Time now);
+  void warn_of_unused_range();
+  void warn_once(bool& warned, const std::string& text);
   void on_zoom(double position, Time now);
   void count_failures(const onvif::SoapAnswer& answer, Time now);
   void refuse(const onvif::Fault& fault, Time now);
@@ -139,10 +147,16 @@ class OnvifHead final : public HeadDevice {
   bool verifying_ = false;      // one is, and the camera has not reported rest
   bool moved_ = false;          // a move was sent, and no stop after it is acknowledged
   bool stops_by_zero_ = false;  // Stop is refused: a move at speed 0 takes its place
-  bool timeout_refused_ = false, positions_ = false;
-  bool absolute_ = false;       // AbsoluteMove works
-  bool keeps_limits_ = false;   // it did at the start, so that the pipeline sends angles and bare speeds
-  std::optional<double> zoom_;  // read, and not taken yet
+  // Whether moves carry a Timeout; tried_without: one that was refused is sent without, to see whether that was the reason.
+  enum class Timeouts : std::uint8_t { given, tried_without, refused } timeouts_ = Timeouts::given;
+  bool tries_ = false;  // the move on its way is that trial
+  bool warned_of_timeout_ = false, warned_of_range_ = false, warned_of_reports_ = false;
+  bool positions_ = false;     // they are reported, and not known to be false
+  bool told_speeds_ = false;   // to the pipeline, which reckons by them from then on
+  bool absolute_ = false;      // AbsoluteMove is there, and was never refused
+  bool keeps_limits_ = false;  // it was there at the start, so that the pipeline sends angles and bare speeds
+  onvif::ReportWatch reports_;
+  std::optional<double> zoom_;                    // read, and not taken yet
   bool seen_moving_ = false, seen_idle_ = false;  // MoveStatus had both values: it is alive
   int failures_ = 0, unreadable_ = 0;             // answers in a row that did not arrive, or are no SOAP
   int stops_while_moving_ = 0;

@@ -10,6 +10,7 @@
 namespace cerberus::drivers {
 
 using onvif::SoapAnswer;
+using sensing::degrees;
 using sensing::radians;
 
 namespace {
@@ -31,10 +32,14 @@ void OnvifHead::on_login(Time now) {
   spaces_ = onvif::velocity_spaces(camera_.options);
   position_space_ = onvif::position_space(camera_.options, options_.mechanics);
   const auto& status = camera_.status;
-  positions_ = options_.feedback && status && status->position &&
-               onvif::to_degrees(*status->position, position_space_, camera_.options, options_.mechanics);
-  absolute_ = positions_ && camera_.absolute && position_space_;
-  stops_by_zero_ = timeout_refused_ = false;
+  const bool position =
+      options_.feedback && status && status->position &&
+      onvif::to_degrees(*status->position, position_space_, camera_.options, options_.mechanics);
+  positions_ = position && !reports_.wrong();
+  absolute_ = options_.absolute && position && position_space_ && !camera_.options.positions.empty();
+  stops_by_zero_ = false;
+  timeouts_ = Timeouts::given;
+  warn_of_unused_range();
   online_ = true;
   zoom_lock_.on_sent(now);  // by the login
   if (options_.warn && !login_.warning().empty()) options_.warn(camera_name() + " " + login_.warning());
@@ -42,6 +47,27 @@ void OnvifHead::on_login(Time now) {
   for (const SentStop& sent : stops_) soap_.cancel(sent.id);
   stops_.clear();
   begin_stop(now);
+}
+
+void OnvifHead::warn_once(bool& warned, const std::string& text) {
+  if (!std::exchange(warned, true) && options_.warn) options_.warn(camera_name() + " " + text);
+}
+
+void OnvifHead::warn_of_unused_range() {
+  const auto& status = camera_.status;
+  if (!options_.mechanics.least) return;
+  const std::string end = ": range= is not used";
+  if (!options_.feedback) return warn_once(warned_of_range_, "has no-feedback" + end);
+  if (!status || !status->position) return warn_once(warned_of_range_, "reports no position" + end);
+  switch (onvif::unit_of(*status->position, position_space_)) {
+    case onvif::Unit::generic:
+      return;
+    case onvif::Unit::degrees:
+      return warn_once(warned_of_range_, "reports its position in degrees" + end);
+    case onvif::Unit::unknown:
+      return warn_once(warned_of_range_,
+                       "reports its position in a space of its own (" + status->position->uri + ")" + end);
+  }
 }
 
 void OnvifHead::on_stop(const SentStop& sent, const SoapAnswer& answer, Time now) {
@@ -62,7 +88,12 @@ void OnvifHead::on_stop(const SentStop& sent, const SoapAnswer& answer, Time now
 
 void OnvifHead::on_move(const SoapAnswer& answer, Time now) {
   move_ = 0;
-  if (answer.good()) return;
+  if (answer.good()) {
+    if (!tries_) return;
+    timeouts_ = Timeouts::refused;
+    return warn_once(warned_of_timeout_,
+                     "takes no Timeout in a move: if cerberus-head is killed, nothing stops it");
+  }
   if (homing_.busy() && answer.fault && !answer.not_authorized()) return refuse(*answer.fault, now);
   const bool home = homing_.busy();  // whose request put no speeds in force
   if (home) homing_.want();
@@ -71,14 +102,20 @@ void OnvifHead::on_move(const SoapAnswer& answer, Time now) {
   if (!answer.fault) return;  // the camera may have obeyed it all the same
   if (!home) reckoned_.on_refused();
   if (answer.not_authorized()) return log_in_again(now);
+  on_refused_move(angle, *answer.fault, now);
+}
+
+// Cameras refuse a Timeout by any fault, and moves for other reasons by the same ones: what helps is found by trying.
+void OnvifHead::on_refused_move(bool angle, const onvif::Fault& fault, Time now) {
   if (angle) {
     absolute_ = false;  // from now on angles are reached at speeds
-  } else if (answer.fault->has("TimeoutNotSupported")) {
-    timeout_refused_ = true;
-  } else if (refuses_space(*answer.fault) && spaces_.size() > 1) {
+  } else if (refuses_space(fault) && spaces_.size() > 1 && !fault.has("TimeoutNotSupported")) {
     spaces_.erase(spaces_.begin());
+  } else if (timeouts_ == Timeouts::given) {
+    timeouts_ = Timeouts::tried_without;
   } else {
-    refuse(*answer.fault, now);
+    if (timeouts_ == Timeouts::tried_without) timeouts_ = Timeouts::given;
+    refuse(fault, now);
   }
 }
 
@@ -94,15 +131,10 @@ void OnvifHead::on_status(const SoapAnswer& answer, Time now) {
   const auto status = onvif::read_status(answer.body);
   if (!status) return;
   if (const auto zoom = onvif::zoom_share(*status, camera_.options)) on_zoom(*zoom, now);
-  if (positions_ && status->position) {
-    const auto at =
-        onvif::to_degrees(*status->position, position_space_, camera_.options, options_.mechanics);
-    if (at) {
-      position_ = at;
-      position_time_ = inquiry_sent_ + (now - inquiry_sent_) / 2;
-      pose_ = PoseLine{{radians(at->pan), 0, 0}, {radians(at->tilt), 0, 0}, 0};
-    }
-  }
+  if (options_.feedback && status->position)
+    if (const auto at =
+            onvif::to_degrees(*status->position, position_space_, camera_.options, options_.mechanics))
+      on_position(*at, now);
   if (!status->moving) return;
   (*status->moving ? seen_moving_ : seen_idle_) = true;
   homing_.on_move_status(*status->moving, inquiry_sent_);
@@ -116,6 +148,26 @@ void OnvifHead::on_status(const SoapAnswer& answer, Time now) {
   if (!verifying_) return;
   ++stops_while_moving_;
   begin_stop(now);
+}
+
+void OnvifHead::on_position(const onvif::Angles& at, Time now) {
+  const bool were = positions_;
+  const motion::PanTilt here = reckoned_.position(inquiry_sent_);
+  reports_.add(at, {degrees(here.pan), degrees(here.tilt)}, inquiry_sent_);
+  positions_ = !reports_.wrong();
+  if (positions_) {
+    position_ = at;
+    position_time_ = inquiry_sent_ + (now - inquiry_sent_) / 2;
+    pose_ = PoseLine{{radians(at.pan), 0, 0}, {radians(at.tilt), 0, 0}, 0};
+    return;
+  }
+  if (!were) return;
+  position_.reset();
+  pose_.reset();
+  sent_angle_ = false;
+  reckoned_.report_again(now);
+  warn_once(warned_of_reports_,
+            "turns and reports the same position all the time: its positions are not used (no-feedback)");
 }
 
 // A camera may take any AbsoluteMove as the end of the move before: the zoom waits until the head stands.

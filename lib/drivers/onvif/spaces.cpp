@@ -73,13 +73,18 @@ PanTilt to_position(const Angles& degrees, const Space& space, const Mechanics& 
           from_degrees(degrees.tilt, mechanics.least->tilt, mechanics.most->tilt, space.y), space.uri};
 }
 
-std::optional<Angles> to_degrees(const Space& position, const std::optional<Space>& space,
-                                 const PtzOptions& options, const Mechanics& mechanics) {
+Unit unit_of(const Space& position, const std::optional<Space>& space) {
   const std::string_view uri = !position.uri.empty() ? std::string_view(position.uri)
                                : space               ? std::string_view(space->uri)
-                                                     : std::string_view();
-  if (uri == kPositionDegrees) return Angles{position.x.from, position.y.from};
-  if (uri != kPositionGeneric || !mechanics.least || !mechanics.most) return std::nullopt;
+                                                     : kPositionGeneric;
+  return uri == kPositionDegrees ? Unit::degrees : uri == kPositionGeneric ? Unit::generic : Unit::unknown;
+}
+
+std::optional<Angles> to_degrees(const Space& position, const std::optional<Space>& space,
+                                 const PtzOptions& options, const Mechanics& mechanics) {
+  const Unit unit = unit_of(position, space);
+  if (unit == Unit::degrees) return Angles{position.x.from, position.y.from};
+  if (unit != Unit::generic || !mechanics.least || !mechanics.most) return std::nullopt;
   const Space* generic = find(options.positions, kPositionGeneric);
   const Range x = generic ? generic->x : Range{}, y = generic ? generic->y : Range{};
   return Angles{in_degrees(position.x.from, mechanics.least->pan, mechanics.most->pan, x),

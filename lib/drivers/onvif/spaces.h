@@ -33,7 +33,11 @@ Angles from_velocity(const PanTilt& velocity, const Mechanics& mechanics);
 // The space of positions that can be expressed in degrees; nothing: none.
 std::optional<Space> position_space(const PtzOptions& options, const Mechanics& mechanics);
 PanTilt to_position(const Angles& degrees, const Space& space, const Mechanics& mechanics);
-// A reported position in degrees. A position without a space is of `space`. Nothing: of a space without degrees.
+// The unit of a reported position. A position without a space is of `space`, and of the generic one where that is not
+// known either.
+enum class Unit : std::uint8_t { generic, degrees, unknown };
+Unit unit_of(const Space& position, const std::optional<Space>& space);
+// A reported position in degrees. Nothing: of a space without degrees.
 std::optional<Angles> to_degrees(const Space& position, const std::optional<Space>& space,
                                  const PtzOptions& options, const Mechanics& mechanics);
 // The speed of an AbsoluteMove; nothing: the camera's own.

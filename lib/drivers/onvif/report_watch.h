@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Whether the positions that a camera reports follow its turns: some cameras always report the same one (0, 0). Until a
+// report has changed, the positions are not proven; they are false once the camera has turned by its commands and none has
+// changed. One that changes later proves them after all: a camera at its mechanical stop cannot follow its commands.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "drivers/onvif/spaces.h"
+#include "motion/pose.h"
+
+namespace cerberus::drivers::onvif {
+
+class ReportWatch {
+ public:
+  using Time = motion::Time;
+  struct Parameters {
+    double change = .5;  // degrees between two reports; derived: cameras round to tenths of a degree
+    double travel =
+        5;  // degrees by its commands; derived: below the 10 degrees that make a fault of a wrong report
+    // From the travel to the report that should show it. derived: a dead time of 500 ms, and a status as old.
+    // Guarded by unit-onvif_head.
+    Time patience = std::chrono::milliseconds(1000);
+  };
+
+  // A report that was asked for at `asked`, while the commands had turned the camera to `reckoned` (degrees).
+  void add(const Angles& reported, const Angles& reckoned, Time asked) {
+    constexpr Parameters kParameters{};
+    const auto apart = [](const Angles& a, const Angles& b) {
+      return std::max(std::abs(a.pan - b.pan), std::abs(a.tilt - b.tilt));
+    };
+    if (!first_) first_ = {reported, reckoned};
+    if (apart(reported, first_->reported) > kParameters.change) state_ = State::proven;
+    if (state_ == State::unproven && !travelled_ && apart(reckoned, first_->reckoned) >= kParameters.travel)
+      travelled_ = asked;
+    if (state_ == State::unproven && travelled_ && asked - *travelled_ >= kParameters.patience)
+      state_ = State::wrong;
+  }
+  bool proven() const { return state_ == State::proven; }
+  bool wrong() const { return state_ == State::wrong; }
+
+ private:
+  enum class State : std::uint8_t { unproven, proven, wrong } state_ = State::unproven;
+  struct Report {
+    Angles reported, reckoned;
+  };
+  std::optional<Report> first_;
+  std::optional<Time> travelled_;
+};
+
+}  // namespace cerberus::drivers::onvif
