@@ -103,7 +103,7 @@ std::string Events::remove(const std::string& camera, std::int64_t id) {
     const int error = name.empty() ? 0 : folder.remove(name);
     if (error != 0) return name + " cannot be deleted: " + std::strerror(error);
   }
-  return changes_.remove(id);
+  return changes_.remove(row);
 }
 
 std::string Events::keep(const std::string& camera, std::int64_t id, bool keep) {

@@ -19,6 +19,7 @@ namespace {
 using namespace std::chrono_literals;
 constexpr auto kLook = 20ms;      // how often the pipelines' levels are read while bytes wait
 constexpr auto kRetention = 10s;  // how often retention is applied
+constexpr auto kWatch = 2s;       // how often the folder is looked at while nothing is asked for
 
 std::string comma_separated(const auto& values, auto text_of) {
   std::string text;
@@ -34,6 +35,12 @@ std::uint64_t size_of(const std::string& path) {
   return !path.empty() && stat(path.c_str(), &about) == 0 ? static_cast<std::uint64_t>(about.st_size) : 0;
 }
 
+record::Time steady() {
+  return std::chrono::microseconds(g_get_monotonic_time());
+}
+
+const FileFault kRemoved{"it was removed or moved while it was written", ""};
+
 // By the kernel; a hardened service (ProtectClock of systemd) may not ask it, and reads what systemd-timesyncd notes.
 bool clock_is_synchronised() {
   timex clock{};  // no modes: it is read
@@ -47,9 +54,7 @@ void DiskWriter::open(const record::Archive::Settings& archive) {
   folder_ = archive.folder;
   const int error = record::Folder(folder_).usable();
   std::string fault;
-  if (error)
-    fault = "The folder " + record::in_quotes(folder_) + " takes no recordings: " + std::strerror(error) +
-            ". Make it, or set \"location\".";
+  if (error) fault = takes_none(error) + ". Make it, or set \"location\".";
   const bool late = [&] {
     const std::lock_guard guard(lock_);
     if (!fault.empty()) folder_fault_ = fault;
@@ -142,6 +147,7 @@ void DiskWriter::run(const record::Archive::Settings& archive) {
   open(archive);
   bool finishing = false;
   auto next_retention = std::chrono::steady_clock::now() + kRetention;
+  auto next_watch = std::chrono::steady_clock::now();
   while (true) {
     std::optional<Command> command;
     {
@@ -150,7 +156,7 @@ void DiskWriter::run(const record::Archive::Settings& archive) {
       if (level_ > 0 || stopping_)
         changed_.wait_for(guard, kLook, [this] { return !commands_.empty() || given_up_; });
       else
-        changed_.wait_until(guard, next_retention, ready);
+        changed_.wait_until(guard, std::min(next_watch, next_retention), ready);
       if (given_up_) break;
       if (!commands_.empty()) {
         command = std::move(commands_.front().command);
@@ -166,6 +172,11 @@ void DiskWriter::run(const record::Archive::Settings& archive) {
       }
     }
     if (command) std::visit([this](auto& each) { execute(each); }, *command);
+    if (std::chrono::steady_clock::now() >= next_watch) {
+      watch();
+      next_watch = std::chrono::steady_clock::now() + kWatch;
+    }
+    report_fault();
     if (std::chrono::steady_clock::now() >= next_retention) {
       retain();
       next_retention = std::chrono::steady_clock::now() + kRetention;
@@ -216,6 +227,7 @@ void DiskWriter::execute(Open& command) {
   }
   pass_complaints();
   if (!fault.empty()) return report_end(file, FileReport::State::failed, {fault, ""});
+  file.since = steady();
   report({FileReport::State::started, file.spec, file.path, {}, {}, {}, 0, {}});
   files_.emplace(number, std::move(file));
 }
@@ -281,9 +293,8 @@ void DiskWriter::execute(Keep& command) {
 }
 
 record::Surroundings DiskWriter::surroundings() const {
-  const auto microseconds = [](gint64 time) { return record::Time(std::chrono::microseconds(time)); };
-  return {microseconds(g_get_real_time()), microseconds(g_get_monotonic_time()),
-          record::Folder(folder_).free_bytes(), clock_is_synchronised()};
+  return {std::chrono::microseconds(g_get_real_time()), steady(), record::Folder(folder_).free_bytes(),
+          clock_is_synchronised()};
 }
 
 void DiskWriter::retain() {
@@ -301,6 +312,47 @@ void DiskWriter::pass_complaints() {
   for (const std::string& text : archive_.take_complaints()) warn(text);
 }
 
+std::string DiskWriter::takes_none(int error) const {
+  return "The folder " + record::in_quotes(folder_) + " takes no recordings: " + std::strerror(error);
+}
+
+// What is wrong with the disk is noticed before a recording needs it, and that it is right again without one.
+void DiskWriter::watch() {
+  std::vector<std::uint32_t> removed;
+  bool writes = false;
+  for (const auto& [number, file] : files_) {
+    if (!archive_.is_there(file.row, file.lock)) {
+      removed.push_back(number);
+    } else if (size_of(file.path) > 0) {
+      writes = true;
+      faults_.file_written_for(steady() - file.since);
+    }
+  }
+  for (const std::uint32_t number : removed) fail(number, kRemoved);
+  const record::Folder folder(folder_);
+  if (faults_.must_try(folder.usable() == 0, folder.free_bytes(), writes, steady())) {
+    const int error = folder.try_out(record::RecordingFaults::Parameters{}.least_free);
+    const bool was_sound = faults_.text().empty();
+    faults_.tried(error ? takes_none(error) : "");
+    if (error && was_sound) warn(faults_.text());
+  }
+  archive_.watch(steady());
+  pass_complaints();
+}
+
+void DiskWriter::report_fault() {
+  faults_.set_index(archive_.index_fault());
+  if (const auto text = faults_.take_change())
+    report({text->empty() ? FileReport::State::sound : FileReport::State::fault,
+            nullptr,
+            {},
+            {},
+            {},
+            {},
+            0,
+            {*text, ""}});
+}
+
 void DiskWriter::execute(Abandon& command) {
   fail(command.file, {command.reason, ""});
 }
@@ -309,9 +361,11 @@ void DiskWriter::execute(Ended& command) {
   if (command.fault) return fail(command.file, *command.fault);
   const auto found = files_.find(command.file);
   if (found == files_.end()) return;
+  if (!archive_.is_there(found->second.row, found->second.lock)) return fail(command.file, kRemoved);
   File file = std::move(found->second);
   files_.erase(found);
   file.pipeline.reset();
+  faults_.file_complete();
   report_end(file, FileReport::State::ended, {});
   check_done();
 }
@@ -336,6 +390,11 @@ void DiskWriter::report_end(File& file, FileReport::State state, const FileFault
   {
     const std::lock_guard guard(lock_);
     unfinished_.erase(file.spec->start.file);
+  }
+  if (state == FileReport::State::failed) {
+    const int error = record::Folder(folder_).try_out(record::RecordingFaults::Parameters{}.least_free);
+    const std::string which = file.path.empty() ? "" : record::in_quotes(file.path) + ": ";
+    faults_.file_failed(error ? takes_none(error) : which + fault.text, steady());
   }
   const std::uint64_t bytes = size_of(file.path);
   if (!file.path.empty()) {

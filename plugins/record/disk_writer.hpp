@@ -15,19 +15,20 @@
 #include "file_pipeline.hpp"
 #include "record/archive/archive.h"
 #include "record/frame_journal.h"
+#include "record/recording_faults.h"
 
 namespace cerberus::plugin {
 
-// What became of a file.
+// What became of a file, or of all recording.
 struct FileReport {
-  enum class State { started, ended, failed, deleted };
+  enum class State { started, ended, failed, deleted, fault, sound };
   State state;
-  std::shared_ptr<const FileSpec> spec;  // nullptr for a file that retention deleted
+  std::shared_ptr<const FileSpec> spec;  // nullptr for a file that retention deleted, and for all recording
   std::string path;                      // empty: none could be made
   std::string lines, picture;            // paths of what is beside it; empty: there is none
   record::FileEnd end;                   // of one that ended
   std::uint64_t bytes = 0;
-  FileFault fault;
+  FileFault fault;  // of one that failed, and why all recording fails
 };
 
 class DiskWriter {
@@ -104,6 +105,7 @@ class DiskWriter {
     std::unique_ptr<FilePipeline> pipeline;
     record::FileEnd end;
     GstClockTime last = 0;  // in the file
+    record::Time since{};   // steady
     bool closing = false;
   };
 
@@ -127,6 +129,9 @@ class DiskWriter {
   void retain();
   void report_deleted(const std::vector<std::string>& names);
   void pass_complaints();
+  void watch();
+  void report_fault();
+  std::string takes_none(int error) const;
   record::Surroundings surroundings() const;
   void fail(std::uint32_t file, const FileFault& fault);
   void report_end(File& file, FileReport::State state, const FileFault& fault);
@@ -154,6 +159,7 @@ class DiskWriter {
   std::string folder_;
   record::Archive archive_;
   std::map<std::uint32_t, File> files_;
+  record::RecordingFaults faults_;
   std::vector<std::function<void()>> waiting_;
 };
 

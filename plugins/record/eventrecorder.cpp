@@ -70,6 +70,11 @@
  * `duration` and `size` (uint64: ns, bytes), `last` (boolean: the event's last file), and `lines` and `picture` (string:
  * the files beside it, where they are). A file whose end is reported is on the disk, and its row is closed.
  *
+ * `state` is `fault`, with `fault` (string) alone, when recording begins to fail, and when it fails for another reason: a
+ * file could not be written, the folder takes none (it is looked at every 2 s, and tried out where less than 1 MiB is
+ * free), or the index cannot be written. It is `sound` when recording works again: a file was written for 2 s, or none is
+ * asked for and the folder takes one on trial.
+ *
  * ## Example launch lines
  * |[
  * gst-launch-1.0 eventrecorder name=recorder location=. \
@@ -133,10 +138,19 @@ void post_deleted(CerberusEventRecorder* self, const plugin::FileReport& report)
   gst_element_post_message(GST_ELEMENT(self), gst_message_new_element(GST_OBJECT(self), facts));
 }
 
+void post_fault(CerberusEventRecorder* self, const std::string& fault) {
+  GstStructure* facts = gst_structure_new("cerberus-recording", "state", G_TYPE_STRING,
+                                          fault.empty() ? "sound" : "fault", nullptr);
+  if (!fault.empty()) gst_structure_set(facts, "fault", G_TYPE_STRING, fault.c_str(), nullptr);
+  gst_element_post_message(GST_ELEMENT(self), gst_message_new_element(GST_OBJECT(self), facts));
+}
+
 // In the writer's thread.
 void post_report(CerberusEventRecorder* self, const plugin::FileReport& report) {
   using State = plugin::FileReport::State;
   if (report.state == State::deleted) return post_deleted(self, report);
+  if (report.state == State::fault || report.state == State::sound)
+    return post_fault(self, report.fault.text);
   const record::FileStart& start = report.spec->start;
   if (report.state == State::failed) {
     CERBERUS_ELEMENT_WARNING(

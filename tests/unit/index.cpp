@@ -111,7 +111,7 @@ START_TEST(a_reader_sees_the_newest_rows_of_a_camera_and_changes_nothing) {
     ck_assert(rows[0].file == "4" && rows[1].file == "3" && rows[2].file == "2");
     ck_assert(reader.read_one(4, rows).empty() && rows.size() == 1 && rows[0].file == "other");
     ck_assert(reader.read_one(6, rows).empty() && rows.empty());
-    ck_assert(!reader.remove(4).empty());
+    ck_assert(!reader.remove(Recording{}).empty());
     reader.close();
   }
   // A read-only disk, on which SQLite can make no file beside the database.
@@ -181,7 +181,7 @@ START_TEST(a_row_that_was_removed_meanwhile_is_written_anew) {
   Recording a = row("a.mp4");
   bool taken = false;
   index.add(a, taken);
-  ck_assert((index.remove(a.id)).empty());
+  ck_assert((index.remove(a)).empty());
   ck_assert(rows_of(index).empty());
   ck_assert((index.update(a)).empty());
   ck_assert(rows_of(index).at(0).file == "a.mp4");

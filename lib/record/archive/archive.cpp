@@ -44,6 +44,13 @@ std::vector<std::string> Archive::take_complaints() {
   return std::exchange(complaints_, {});
 }
 
+// Notes what came of writing to the index. Returns whether that is no fault.
+bool Archive::note(const std::string& fault) {
+  index_fault_ = fault;
+  complain(fault);
+  return fault.empty();
+}
+
 std::string Archive::index_path() const {
   return (std::filesystem::path(settings_.folder) / settings_.index).string();
 }
@@ -52,8 +59,8 @@ std::vector<std::string> Archive::open(const Settings& settings, const Surroundi
   settings_ = settings;
   folder_ = Folder(settings.folder);
   last_complaint_.clear();
+  index_fault_.clear();
   retention_ = Retention();
-  pause_ = Time::zero();
   overflow_reported_ = false;
   close();
   if (settings.index.empty()) return {};
@@ -77,12 +84,28 @@ void Archive::open_index(Time steady) {
     }
   }
   if (!fault.empty()) complain(fault + (Index::available() ? "; it is tried again, recordings go on" : ""));
+  if (Index::available()) index_fault_ = fault;
   if (index_.is_open()) {
     list();
     return reconcile();
   }
-  pause_ = std::clamp(2 * pause_, kFirstPause, kLongestPause);
-  open_again_ = steady + pause_;
+  open_again_ = steady + kPause;
+}
+
+// A folder that was removed and made anew has another index, or none: what is written to the one of before is lost.
+void Archive::check_place(Time steady) {
+  if (!index_.is_open() || !folder_.free_bytes() || index_.is_at(index_path())) return;
+  index_.close();
+  complain("the index of recordings " + in_quotes(index_path()) + " is gone, and another one is begun");
+  open_index(steady);
+}
+
+void Archive::watch(Time steady) {
+  if (settings_.index.empty() || !Index::available()) return;
+  check_place(steady);
+  if (!index_.is_open() && steady >= open_again_) open_index(steady);
+  if (!index_.is_open() || index_fault_.empty()) return;
+  if (note(index_.try_to_write())) list();
 }
 
 // Adds the rows of recordings that were completed without one.
@@ -91,8 +114,10 @@ void Archive::list() {
   std::erase_if(unlisted_, [this](Recording& row) {
     if (!folder_.size(row.file)) return false;  // its disk may be mounted again
     bool taken = false;
-    const std::string fault = row.id ? index_.update(row) : index_.add(row, taken);
-    return fault.empty() || taken;
+    if (!index_fault_.empty()) return false;  // of the one before: a lock is waited for once
+    index_fault_ = row.id ? index_.update(row) : index_.add(row, taken);
+    if (taken) index_fault_.clear();
+    return index_fault_.empty();
   });
 }
 
@@ -140,7 +165,7 @@ void Archive::reconcile(Recording& row) {
   if (!is_recording(row)) {
     complain("the index names " + in_quotes(row.file) +
              ", which is no recording of this folder: the row is removed");
-    return complain(index_.remove(row.id));
+    return complain(index_.remove(row));
   }
   OpenFile file;
   if (row.open) {
@@ -152,10 +177,10 @@ void Archive::reconcile(Recording& row) {
     if (again.empty()) return;
     row = again.front();
     // Another recorder may be about to make the file: it is left alone, and finish() adds the row again.
-    if (row.open && error == ENOENT) return complain(index_.remove(row.id));
+    if (row.open && error == ENOENT) return complain(index_.remove(row));
   }
   const Recording before = row;
-  if (!restore(row, file)) return row.open && !file ? complain(index_.remove(row.id)) : discard(row);
+  if (!restore(row, file)) return row.open && !file ? complain(index_.remove(row)) : discard(row);
   measure(row);
   if (row.open != before.open || row.bytes != before.bytes) complain(index_.update(row));
 }
@@ -177,11 +202,11 @@ std::string Archive::begin(Recording& recording, const std::string& name, std::s
     if (index_.is_open()) {
       const std::string fault = index_.add(recording, taken);
       if (taken) continue;
-      complain(fault);
+      note(fault);
     }
     const int error = folder_.create(recording.file, file);
     if (!error) return {};
-    if (recording.id) complain(index_.remove(recording.id));
+    if (recording.id) complain(index_.remove(recording));
     recording.id = 0;
     if (error != EEXIST) return failed(error);
   }
@@ -208,9 +233,7 @@ void Archive::finish(Recording& recording, const OpenFile& file) {
   measure(recording);
   recording.open = false;
   if (settings_.index.empty()) return;
-  const std::string fault = index_.is_open() ? index_.update(recording) : std::string();
-  complain(fault);
-  if (fault.empty() && index_.is_open()) return;
+  if (index_.is_open() && note(index_.update(recording))) return;
   if (unlisted_.size() < kMostUnlisted) return unlisted_.push_back(recording);
   if (!std::exchange(overflow_reported_, true))
     complain(std::to_string(kMostUnlisted) + " recordings wait for their rows: " + in_quotes(recording.file) +
@@ -230,12 +253,11 @@ bool Archive::remove_files(const Recording& recording) {
 }
 
 void Archive::discard(const Recording& recording) {
-  if (remove_files(recording) && index_.is_open() && recording.id) complain(index_.remove(recording.id));
+  if (remove_files(recording) && index_.is_open() && recording.id) complain(index_.remove(recording));
 }
 
 std::vector<std::string> Archive::retain(const Surroundings& now) {
-  if (Index::available() && !index_.is_open() && !settings_.index.empty() && now.steady >= open_again_)
-    open_index(now.steady);
+  watch(now.steady);
   return apply_retention(now);
 }
 
@@ -243,7 +265,7 @@ std::vector<std::string> Archive::apply_retention(Surroundings now) {
   std::vector<std::string> deleted;
   std::vector<Recording> rows;
   if (!index_.is_open() || !now.free_bytes) return deleted;
-  if (!unlisted_.empty()) list();
+  if (!unlisted_.empty() && index_fault_.empty()) list();
   complain(index_.read(rows));
   // Another recorder may have deleted what is not among the rows since the room was measured.
   now.free_bytes = std::max(*now.free_bytes, folder_.free_bytes().value_or(0));

@@ -27,8 +27,8 @@ class Archive {
   // Opens the index and reconciles rows and files: a row without its file is removed with what else is left of it, or
   // alone where it is open; one that a process left open is closed with what is there (MP4 is repaired); one of a
   // file without content is removed with it. A damaged index is renamed to NAME.damaged and begun anew. Then retention
-  // is applied: returns the files that were deleted. An index that cannot be opened is tried again by retain(), after
-  // pauses that double; what is recorded until then gets its rows then, while the process runs and the file is there.
+  // is applied: returns the files that were deleted. An index that cannot be opened is tried again by retain(), every
+  // 10 s; what is recorded until then gets its rows then, while the process runs and the file is there.
   std::vector<std::string> open(const Settings& settings, const Surroundings& now);
   void set_limits(const Limits& limits) { settings_.limits = limits; }
   void close();
@@ -49,17 +49,28 @@ class Archive {
   // Sets or clears `keep` of a file, by its name or its path. Returns what is wrong.
   std::string keep(const std::string& file, bool keep);
 
+  // Looks whether the index is the one of the folder still and can be written; meant for every few seconds.
+  void watch(Time steady);
+  // Why new recordings are not listed; empty: they are, or there is to be no index.
+  const std::string& index_fault() const { return index_fault_; }
+  // Whether the file of a recording is still where it was made.
+  bool is_there(const Recording& recording, const OpenFile& file) const {
+    return folder_.is_there(recording.file, file);
+  }
+
   // The faults of the index and of deletions since the last call, each once until it changes.
   std::vector<std::string> take_complaints();
 
  private:
-  // How often an index that could not be opened is tried again. Chosen: a mount that comes late is noticed soon, a broken
-  // disk is left alone. Guarded by the test of an index that can be opened later.
-  static constexpr Time kFirstPause = std::chrono::seconds(10), kLongestPause = std::chrono::minutes(10);
+  // How often an index that could not be opened is tried again. Chosen: a mount that comes late or a lock that ends is
+  // noticed soon. Guarded by the test of an index that can be opened later.
+  static constexpr Time kPause = std::chrono::seconds(10);
   // Recordings that wait for their rows. Derived: a day of an event a minute; 300 bytes each.
   static constexpr std::size_t kMostUnlisted = 1440;
 
   void complain(std::string text);
+  bool note(const std::string& fault);
+  void check_place(Time steady);
   std::string index_path() const;
   void open_index(Time steady);
   std::vector<std::string> apply_retention(Surroundings now);
@@ -74,11 +85,11 @@ class Archive {
   Folder folder_{"."};
   Index index_;
   Retention retention_;
-  Time open_again_{}, pause_{};      // steady: when the index is tried again, and the pause before
+  Time open_again_{};                // steady: when the index is tried again
   std::vector<Recording> unlisted_;  // complete, and without a row
   bool overflow_reported_ = false;   // of unlisted_
   std::vector<std::string> complaints_;
-  std::string last_complaint_;
+  std::string last_complaint_, index_fault_;
 };
 
 }  // namespace cerberus::record

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -105,6 +106,21 @@ int Folder::usable() const {
   return access(path_.c_str(), W_OK | X_OK) != 0 ? errno : 0;
 }
 
+// The file has no name while it is written: nothing is left behind. Room is taken as posix_fallocate(3) does it, which
+// wears no flash memory.
+int Folder::try_out(std::uint64_t bytes) const {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur < bytes) return EFBIG;  // else a signal says so
+  const std::string name = ".trial-" + std::to_string(getpid()) + '-' + std::to_string(gettid());
+  OpenFile file;
+  if (const int error = create(name, file); error) return error;
+  if (const int error = remove(name); error) return error;
+  static constexpr char kBytes[4096] = {};
+  if (const int error = file.write(kBytes, sizeof kBytes); error) return error;
+  if (const int error = posix_fallocate(file.descriptor(), 0, static_cast<off_t>(bytes)); error) return error;
+  return file.sync();
+}
+
 int Folder::create(const std::string& name, OpenFile& file) const {
   // Another recorder may remove a folder between its making and its use, and take a file that is not locked yet for what
   // a killed process left.
@@ -165,6 +181,12 @@ std::int64_t Folder::changed(const std::string& name) const {
   struct stat about{};
   if (!look_at(path_, name, about)) return 0;
   return std::int64_t{about.st_mtim.tv_sec} * 1'000'000'000 + about.st_mtim.tv_nsec;
+}
+
+bool Folder::is_there(const std::string& name, const OpenFile& file) const {
+  struct stat named{}, opened{};
+  return look_at(path_, name, named) && fstat(file.descriptor(), &opened) == 0 &&
+         named.st_ino == opened.st_ino && named.st_dev == opened.st_dev;
 }
 
 bool Folder::in_use(const std::string& name) const {

@@ -50,6 +50,8 @@ class Folder {
 
   // 0: it is there, and this process may make files in it.
   int usable() const;
+  // Writes a file of this size there and deletes it. 0: the disk takes recordings.
+  int try_out(std::uint64_t bytes) const;
   // Whether `name` can be a file's name below the folder.
   static bool is_name(const std::string& name);
 
@@ -66,6 +68,8 @@ class Folder {
   std::optional<std::uint64_t> size(const std::string& name) const;
   // Time of its last change, ns since 1970; 0: there is none.
   std::int64_t changed(const std::string& name) const;
+  // Whether `file` is still the one of that name: it may have been removed or moved since it was opened.
+  bool is_there(const std::string& name, const OpenFile& file) const;
   // Whether a recorder has it open.
   bool in_use(const std::string& name) const;
   // Deletes a regular file, and the folders in its name that are empty then. A file that is not there is no failure.

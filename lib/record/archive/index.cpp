@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <sqlite3.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -131,6 +132,8 @@ std::string Index::open(const std::string& path, bool& damaged) {
   // Made here, so that its mode is ours; SQLite gives its journal files the same one.
   const int made = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0640);
   if (made < 0) return "the index of recordings " + in_quotes(path) + ": " + std::strerror(errno);
+  struct stat about{};
+  if (fstat(made, &about) == 0) file_ = {about.st_dev, about.st_ino};
   ::close(made);
   sqlite3* database = nullptr;
   const int result =
@@ -201,6 +204,20 @@ void Index::close() {
   database_.reset();
 }
 
+bool Index::is_at(const std::string& path) const {
+  struct stat about{};
+  return stat(path.c_str(), &about) == 0 &&
+         file_ == std::pair<std::uint64_t, std::uint64_t>(about.st_dev, about.st_ino);
+}
+
+std::string Index::try_to_write() {
+  sqlite3_busy_timeout(database_.get(), 0);
+  std::string text = run("BEGIN IMMEDIATE");
+  if (text.empty()) text = run("ROLLBACK");
+  sqlite3_busy_timeout(database_.get(), kPatience);
+  return text;
+}
+
 // In one transaction, so that two recorders that start together do it once.
 std::string Index::migrate() {
   if (std::string text = run("BEGIN IMMEDIATE"); !text.empty()) return text;
@@ -234,16 +251,16 @@ std::string Index::add(Recording& recording, bool& taken) {
 
 std::string Index::update(Recording& recording) {
   Statement change(database_.get(), std::string("UPDATE recordings SET (") + kColumns +
-                                        ") = (?,?,?,?,?,?,?,?,?,?,?,?,?,?) WHERE id = ?");
-  if (change.bind(recording).bind(recording.id).step() != SQLITE_DONE) return fault();
+                                        ") = (?,?,?,?,?,?,?,?,?,?,?,?,?,?) WHERE id = ? AND file = ?");
+  if (change.bind(recording).bind(recording.id).bind(recording.file).step() != SQLITE_DONE) return fault();
   if (sqlite3_changes(database_.get()) > 0) return {};
   bool taken = false;
   return add(recording, taken);
 }
 
-std::string Index::remove(std::int64_t id) {
-  Statement statement(database_.get(), "DELETE FROM recordings WHERE id = ?");
-  return statement.bind(id).step() == SQLITE_DONE ? std::string() : fault();
+std::string Index::remove(const Recording& recording) {
+  Statement statement(database_.get(), "DELETE FROM recordings WHERE id = ? AND file = ?");
+  return statement.bind(recording.id).bind(recording.file).step() == SQLITE_DONE ? std::string() : fault();
 }
 
 std::string Index::remove_with(std::int64_t id, const std::function<bool()>& remove_files, bool& removed) {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "record/unit.h"
@@ -48,12 +49,17 @@ class Index {
   std::string open_to_read(const std::string& path);
   void close();
   bool is_open() const { return database_ != nullptr; }
+  // Whether the database at this path is the one that open() opened: its folder may have been made anew.
+  bool is_at(const std::string& path) const;
+  // Whether rows could be written now: returns what is wrong, and waits for no other program.
+  std::string try_to_write();
 
   // Adds a row, and sets its id. `taken` becomes true if there is a row with that file.
   std::string add(Recording& recording, bool& taken);
-  // Overwrites all of a row but `keep`; adds it anew if it is gone.
+  // Overwrites all of a row but `keep`; adds it anew if it is gone. A row is that of its id and its file: the index may
+  // have been begun anew since the id was given.
   std::string update(Recording& recording);
-  std::string remove(std::int64_t id);
+  std::string remove(const Recording& recording);
   // Removes a row that is neither open nor to be kept, and keeps every other program from changing it meanwhile:
   // remove_files() is called in between, and where it returns false the row stays. `removed`: the row is gone now, and
   // was there.
@@ -77,6 +83,7 @@ class Index {
     void operator()(sqlite3* database) const;
   };
   std::unique_ptr<sqlite3, Closer> database_;
+  std::pair<std::uint64_t, std::uint64_t> file_{};  // device and inode of what open() opened
 };
 
 }  // namespace cerberus::record

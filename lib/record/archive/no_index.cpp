@@ -22,6 +22,12 @@ std::string Index::open_to_read(const std::string&) {
   return kNone;
 }
 void Index::close() {}
+bool Index::is_at(const std::string&) const {
+  return false;
+}
+std::string Index::try_to_write() {
+  return kNone;
+}
 std::string Index::add(Recording&, bool& taken) {
   taken = false;
   return kNone;
@@ -29,7 +35,7 @@ std::string Index::add(Recording&, bool& taken) {
 std::string Index::update(Recording&) {
   return kNone;
 }
-std::string Index::remove(std::int64_t) {
+std::string Index::remove(const Recording&) {
   return kNone;
 }
 std::string Index::remove_with(std::int64_t, const std::function<bool()>&, bool& removed) {
