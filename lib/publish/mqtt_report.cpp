@@ -31,6 +31,9 @@ constexpr std::array<Order, 10> kOrders{{{"move-to", 2},
                                          {"privacy", 0},
                                          {"picture", 0}}};
 
+// A full turn. What is beyond it is a mistake, where a limit of the head would make a turn of it.
+constexpr double kMostDegrees = 360;
+
 // Without the newline.
 std::string text_of(JsonLine& line) {
   std::string_view text = line.finish();
@@ -131,25 +134,41 @@ void MqttReport::tracks(const MqttFrame& frame, std::vector<MqttMessage>& out) {
   }
 }
 
+std::vector<MqttMessage> MqttReport::begin() {
+  std::vector<MqttMessage> out;
+  state(out);
+  return out;
+}
+
+void MqttReport::state(std::vector<MqttMessage>& out) {
+  JsonLine line;
+  line.open('{').key("motion").boolean(!visits_.empty()).key("objects").integer(visits_.size()).close('}');
+  once("state", text_of(line), out);
+}
+
+void MqttReport::head(std::vector<MqttMessage>& out) {
+  JsonLine line;
+  line.open('{').key("pan").fixed(head_->pan, 2).key("tilt").fixed(head_->tilt, 2);
+  line.key("moving").boolean(head_->moving).close('}');
+  once("pantilt", text_of(line), out);
+}
+
 std::vector<MqttMessage> MqttReport::update(const MqttFrame& frame) {
   std::vector<MqttMessage> out;
+  distance_ = arrival_ ? frame.arrival - *arrival_ : std::chrono::nanoseconds::zero();
+  arrival_ = frame.arrival;
   if (frame.analysed) {
     tracks(frame, out);
-    JsonLine line;
-    line.open('{').key("motion").boolean(!visits_.empty()).key("objects").integer(visits_.size()).close('}');
-    once("state", text_of(line), out);
+    state(out);
   }
   if (frame.head) {
     const bool rests = head_ && head_->moving && !frame.head->moving;
     const bool due =
         !head_ || rests || frame.time < head_reported_ || frame.time - head_reported_ >= parameters_.head;
     if (due) {
-      JsonLine line;
-      line.open('{').key("pan").fixed(frame.head->pan, 2).key("tilt").fixed(frame.head->tilt, 2);
-      line.key("moving").boolean(frame.head->moving).close('}');
-      once("pantilt", text_of(line), out);
       head_ = frame.head;
       head_reported_ = frame.time;
+      head(out);
     }
   }
   if (frame.decision) {
@@ -163,25 +182,49 @@ std::vector<MqttMessage> MqttReport::update(const MqttFrame& frame) {
     line.close('}');
     once("rule", text_of(line), out);
   }
-  if (!frame.sensors.empty()) {
-    JsonLine line;
-    line.open('{').key("sensors").open('[');
-    for (const std::uint8_t reading : frame.sensors) line.integer(static_cast<int>(reading));
-    line.close(']').close('}');
-    once("pir", text_of(line), out);
-  }
+  if (!frame.sensors.empty()) pir(frame.sensors, out);
+  sensors_ = frame.sensors.size();
   return out;
 }
+
+void MqttReport::pir(std::span<const std::uint8_t> readings, std::vector<MqttMessage>& out) {
+  JsonLine line;
+  line.open('{').key("sensors").open('[');
+  for (const std::uint8_t reading : readings) line.integer(static_cast<int>(reading));
+  line.close(']').close('}');
+  once("pir", text_of(line), out);
+}
+
+// What was published of the last frame is true no more, and stays at the broker.
 
 std::vector<MqttMessage> MqttReport::end() {
   std::vector<MqttMessage> out;
   for (const auto& [id, visit] : std::exchange(visits_, {}))
     out.push_back({topic("track"), track_text("left", std::nullopt, visit.object), false});
+  if (last_.contains("state")) state(out);
+  if (head_ && head_->moving) {
+    head_->moving = false;
+    head(out);
+  }
+  constexpr std::uint8_t kInvalid = 2;
+  if (sensors_ > 0) pir(std::vector<std::uint8_t>(sensors_, kInvalid), out);
+  if (last_.contains("rule")) {
+    JsonLine line;
+    line.open('{').key("rule").null().key("name").string("").key("action").string("").key("target").null();
+    line.close('}');
+    once("rule", text_of(line), out);
+  }
+  arrival_.reset();
   return out;
 }
 
-std::vector<MqttMessage> MqttReport::discovery(std::string_view home_assistant, std::size_t sensors,
-                                               bool head) const {
+std::vector<MqttMessage> MqttReport::check(std::chrono::nanoseconds now) {
+  if (!arrival_ || now - *arrival_ < parameters_.left + 2 * distance_) return {};
+  return end();
+}
+
+std::vector<MqttMessage> MqttReport::discovery(std::string_view home_assistant,
+                                               const MqttParts& parts) const {
   std::vector<MqttMessage> out;
   const std::string device = prefix_ + '_' + camera_;
   const auto add = [&](std::string_view component, std::string_view name, std::string_view source,
@@ -204,26 +247,46 @@ std::vector<MqttMessage> MqttReport::discovery(std::string_view home_assistant, 
   add("binary_sensor", "motion", "state", "{{ 'ON' if value_json.motion else 'OFF' }}", "motion", "");
   add("sensor", "objects", "state", "{{ value_json.objects }}", "", "");
   add("sensor", "mode", "mode", "{{ value }}", "", "");
-  if (sensors > 0) add("sensor", "rule", "rule", "{{ value_json.name }}", "", "");
-  for (std::size_t k = 0; k < sensors; ++k) {
+  if (parts.sensors > 0) add("sensor", "rule", "rule", "{{ value_json.name }}", "", "");
+  for (std::size_t k = 0; k < parts.sensors; ++k) {
     const std::string number = std::to_string(k);
     std::string name = "pir_", value = "{{ 'ON' if value_json.sensors[";
     name += number;
     value.append(number).append("] == 1 else 'OFF' }}");
     add("binary_sensor", name, "pir", value, "motion", "");
   }
-  if (head) {
+  if (parts.recorder) {
+    add("binary_sensor", "recording", "recording", "{{ 'ON' if value_json.recording else 'OFF' }}", "running",
+        "");
+    add("binary_sensor", "recording_fault", "recording", "{{ 'ON' if value_json.fault else 'OFF' }}",
+        "problem", "");
+  }
+  if (parts.head) {
     add("sensor", "pan", "pantilt", "{{ value_json.pan }}", "", "\u00b0");
     add("sensor", "tilt", "pantilt", "{{ value_json.tilt }}", "", "\u00b0");
   }
   return out;
 }
 
-std::vector<MqttMessage> MqttReport::discovery_of(const MqttFrame& frame, std::string_view home_assistant) {
-  const Announced now{frame.sensors.size(), frame.head.has_value()};
+std::vector<MqttMessage> MqttReport::discovery_of(const MqttFrame& frame, std::string_view home_assistant,
+                                                  bool recorder) {
+  const MqttParts now{frame.sensors.size(), frame.head.has_value(), recorder};
   if (announced_ == now) return {};
   announced_ = now;
-  return discovery(home_assistant, now.sensors, now.head);
+  return discovery(home_assistant, now);
+}
+
+std::vector<std::string> MqttReport::retained_topics(std::string_view home_assistant,
+                                                     const MqttParts& parts) const {
+  std::vector<std::string> all;
+  for (const char* name : {"status", "mode", "state", "rule"}) all.push_back(topic(name));
+  if (parts.sensors > 0) all.push_back(topic("pir"));
+  if (parts.head) all.push_back(topic("pantilt"));
+  if (parts.recorder)
+    for (const char* name : {"event", "recording"}) all.push_back(topic(name));
+  if (!home_assistant.empty())
+    for (MqttMessage& message : discovery(home_assistant, parts)) all.push_back(std::move(message.topic));
+  return all;
 }
 
 std::optional<int> arguments_of(std::string_view name) {
@@ -251,11 +314,13 @@ std::optional<MqttCommand> parse_mqtt_command(std::string_view name, std::string
   // Orders without numbers may carry any payload: home automation sends one always.
   if (good && *arguments > 0) good = payload.empty();
   if (good && name == "follow")
-    good = command.first >= 0 && command.first <= 4294967295.0 && command.first == std::floor(command.first);
+    good = command.first >= 1 && command.first <= 4294967295.0 && command.first == std::floor(command.first);
+  if (good && *arguments == 2)
+    good = std::abs(command.first) <= kMostDegrees && std::abs(command.second) <= kMostDegrees;
   if (!good) {
-    error = "its payload is " + std::string(*arguments == 2   ? "pan and tilt in degrees: 10 -5"
-                                            : *arguments == 1 ? "the number of a track"
-                                                              : "too long");
+    error = *arguments == 2   ? "its payload is pan and tilt in degrees, from -360 to 360: 10 -5"
+            : *arguments == 1 ? "its payload is the number of a track, from 1"
+                              : "its payload is too long";
     return std::nullopt;
   }
   return command;

@@ -29,6 +29,7 @@ struct MqttObject {
 // What one frame carries; views are valid during the call.
 struct MqttFrame {
   std::chrono::nanoseconds time{};              // running time
+  std::chrono::nanoseconds arrival{};           // when it came, by a clock that never jumps
   std::optional<std::chrono::nanoseconds> utc;  // since 1970
   bool analysed = false;                        // a detector looked at it
   std::span<const MqttObject> objects;          // with a track
@@ -44,6 +45,14 @@ struct MqttFrame {
   };
   std::optional<Decision> decision;
   std::span<const std::uint8_t> sensors;  // 0 nothing, 1 detection, 2 invalid
+};
+
+// What a camera has beside its detection.
+struct MqttParts {
+  std::size_t sensors = 0;
+  bool head = false;
+  bool recorder = false;
+  bool operator==(const MqttParts&) const = default;
 };
 
 // Whether a name can be one level of a topic.
@@ -66,37 +75,47 @@ class MqttReport {
   MqttReport(std::string prefix, std::string camera)
       : prefix_(std::move(prefix)), camera_(std::move(camera)) {}
 
+  // Before the first frame: nothing moves, whatever a process of before left at the broker.
+  std::vector<MqttMessage> begin();
   // The messages that this frame causes.
   std::vector<MqttMessage> update(const MqttFrame& frame);
-  // The stream ends: all tracks leave.
+  // The stream ends: all tracks leave, nothing moves, no sensor is read and no rule holds.
   std::vector<MqttMessage> end();
+  // The same where no frame has come for Parameters::left and twice the last distance of two frames. `now`: as
+  // `arrival`; meant for every second.
+  std::vector<MqttMessage> check(std::chrono::nanoseconds now);
 
   std::string topic(std::string_view name) const;  // "cerberus/front/status"
-  // Retained messages by which Home Assistant finds the camera, its sensors and its head (MQTT discovery).
-  std::vector<MqttMessage> discovery(std::string_view home_assistant, std::size_t sensors, bool head) const;
+  // Retained messages by which Home Assistant finds the camera and its parts (MQTT discovery).
+  std::vector<MqttMessage> discovery(std::string_view home_assistant, const MqttParts& parts) const;
   // The same for the sensors and the head of this frame; nothing where they are those of the call before.
-  std::vector<MqttMessage> discovery_of(const MqttFrame& frame, std::string_view home_assistant);
+  std::vector<MqttMessage> discovery_of(const MqttFrame& frame, std::string_view home_assistant,
+                                        bool recorder);
+  // Every topic that a camera with these parts may leave retained at the broker. `home_assistant`: empty: no discovery.
+  std::vector<std::string> retained_topics(std::string_view home_assistant, const MqttParts& parts) const;
 
  private:
-  struct Announced {
-    std::size_t sensors = 0;
-    bool head = false;
-    bool operator==(const Announced&) const = default;
-  };
   struct Visit {
     std::string object;  // members of the last report, JSON
     std::chrono::nanoseconds seen{}, reported{};
   };
   void tracks(const MqttFrame& frame, std::vector<MqttMessage>& out);
+  void state(std::vector<MqttMessage>& out);
+  void head(std::vector<MqttMessage>& out);
+  void pir(std::span<const std::uint8_t> readings, std::vector<MqttMessage>& out);
   void once(std::string_view name, std::string payload, std::vector<MqttMessage>& out);
 
   Parameters parameters_;
   std::string prefix_, camera_;
   std::map<std::uint32_t, Visit> visits_;
   std::map<std::string, std::string, std::less<>> last_;  // payload of each retained topic
-  std::optional<Announced> announced_;
+  std::optional<MqttParts> announced_;
   std::optional<MqttFrame::Head> head_;
   std::chrono::nanoseconds head_reported_{};
+  std::size_t sensors_ = 0;  // of the last frame
+  // Of the last frame, and to the one before; nullopt: none came since the stream began or was found silent.
+  std::optional<std::chrono::nanoseconds> arrival_;
+  std::chrono::nanoseconds distance_{};
 };
 
 // An order that arrived at PREFIX/CAMERA/command/NAME.

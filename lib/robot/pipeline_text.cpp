@@ -194,6 +194,7 @@ class Writer {
     add(" ! mqttpublish name=mqtt");
     set("mqtt", "camera-name", camera_.name);
     set("mqtt", "head", camera_.name);
+    if (camera_.recorder) set("mqtt", "recorder", "true");
     set_all("mqtt", *mqtt_);
   }
 

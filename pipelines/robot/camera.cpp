@@ -85,9 +85,12 @@ void Camera::start() {
   publish_mode();
   record_ = true;
   set_show(true);
+  if (parts_.recorder) recording_fault_.clear();  // its recorder reports its own
+  published_recording_.clear();
   // What refuses to start posts an error on the bus.
   gst_element_set_state(pipeline_, GST_STATE_PLAYING);
   publish_event();
+  publish_recording();
 }
 
 // The part of the camera that an element belongs to.
@@ -110,6 +113,7 @@ void Camera::fail(const std::string& part, const std::string& text) {
     again_ = true;
   } else if (part == "recorder") {
     wait = recorder_backoff_.failed(now);
+    recording_fault_ = text;
     parts_.recorder = false;
     again_ = true;
   } else {
@@ -140,10 +144,23 @@ void Camera::on_report(const GstStructure* report) {
     gboolean last = FALSE;
     gst_structure_get_boolean(report, "last", &last);
     const std::string_view what = state;
+    if (what == "fault") {
+      const gchar* fault = gst_structure_get_string(report, "fault");
+      set_recording_fault(fault ? fault : "unknown");
+    }
+    if (what == "sound") set_recording_fault("");
     if (what == "started") recording_ = true;
     if (what == "started" || what == "ended") publish_event();
     if ((what == "ended" && last) || what == "failed") recording_ = false;
+    publish_recording();
   }
+}
+
+// Of the recorder that runs. The first line of the log about it says that recording fails.
+void Camera::set_recording_fault(const std::string& text) {
+  if (!parts_.recorder || text == recording_fault_) return;
+  recording_fault_ = text;
+  say(settings_.name, text.empty() ? "recording works again" : "recording fails: " + text);
 }
 
 void Camera::on_message(GstMessage* message) {
@@ -254,7 +271,8 @@ void Camera::close() {
   if (pipeline_ == nullptr) return;
   state_ = State::closing;
   since_ = Clock::now();
-  record_ = false;
+  record_ = recording_ = false;
+  publish_recording();
   set_show(false);
   if (bus_watch_ != 0) g_source_remove(std::exchange(bus_watch_, 0));
   using Holder = std::shared_ptr<Newest>;
@@ -281,7 +299,6 @@ void Camera::closed() {
   g_clear_pointer(&pipeline_, gst_object_unref);
   rate_ = 0;
   head_state_.clear();
-  recording_ = false;
   if (again_ && wanted_) {
     start();
   } else if (wanted_) {

@@ -58,7 +58,8 @@ class Camera {
 
   const CameraSettings& settings() const { return settings_; }
   State state() const { return state_; }
-  const std::string& fault() const { return fault_; }  // why a part is waiting; empty: nothing is
+  // Why a part is waiting, or why recording fails; empty: nothing is wrong.
+  std::string fault() const { return fault_.empty() ? recording_fault() : fault_; }
   double frames_a_second() const { return rate_; }
 
   // Runs in this mode; privacy stops the pipeline once the head is parked.
@@ -74,6 +75,9 @@ class Camera {
   // Stops for good. is_stopped() tells when that is done.
   void shut_down();
   bool is_stopped() const;
+  bool is_stopping() const {
+    return state_ == State::parking || state_ == State::ending || state_ == State::closing;
+  }
   // Once a second.
   void tick();
   // Whether frames come, or none are expected: what feeds the watchdog.
@@ -81,11 +85,15 @@ class Camera {
 
   // What the head does (`state` of cerberus-pantilt), and whether an event is being recorded.
   const std::string& head_state() const { return head_state_; }
-  bool is_recording() const { return recording_; }
+  bool is_recording() const { return recording_ && recording_fault_.empty(); }
 
   void set_on_publish(OnPublish on_publish) { on_publish_ = std::move(on_publish); }
   // Publishes the newest recording by MQTT, or that there is none.
   void publish_event();
+  // Why recordings cannot be made or listed; empty: they can.
+  std::string recording_fault() const {
+    return recording_fault_.empty() ? "" : "recorder: " + recording_fault_;
+  }
   void set_on_picture(OnPicture on_picture) { on_picture_ = std::move(on_picture); }
   // Pictures are only drawn while somebody looks.
   void set_watched(bool watched);
@@ -123,6 +131,8 @@ class Camera {
   void update_draw();
   void set_triggers();
   void publish_mode();
+  void publish_recording();
+  void set_recording_fault(const std::string& text);
   bool publish(const char* topic, GBytes* payload, bool retain);
   void publish_picture();
   void send_asked_picture();
@@ -148,6 +158,8 @@ class Camera {
   Backoff camera_backoff_, head_backoff_, recorder_backoff_;
   std::string fault_, head_state_;
   bool recording_ = false;
+  std::string recording_fault_;      // of the recorder that runs, or why there is none
+  std::string published_recording_;  // the last payload of the topic `recording`
   GstElement* pipeline_ = nullptr;
   GstElement *head_ = nullptr, *recorder_ = nullptr;
   guint bus_watch_ = 0;

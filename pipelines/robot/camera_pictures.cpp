@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "robot/events.h"
+#include "text/json_line.h"
 
 namespace cerberus::robot {
 
@@ -141,6 +142,18 @@ void Camera::publish_event() {
   if (!fault.empty()) return;  // the page says so where it is asked for
   g_autoptr(GBytes) payload = g_bytes_new(text.data(), text.size());
   publish("event", payload, true);
+}
+
+// Whether an event is being recorded, and why recording fails, where it changed.
+void Camera::publish_recording() {
+  if (!shared_.mqtt || !settings_.recorder) return;
+  text::JsonLine line;
+  line.open('{').key("recording").boolean(is_recording()).key("fault").text(recording_fault_).close('}');
+  std::string_view text = line.finish();
+  text.remove_suffix(1);  // the newline
+  if (text == published_recording_) return;
+  g_autoptr(GBytes) payload = g_bytes_new(text.data(), text.size());
+  if (publish("recording", payload, true)) published_recording_ = text;
 }
 
 // Asks for a picture that is drawn from now on: while nobody looks there is none, or an old one.

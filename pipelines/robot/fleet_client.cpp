@@ -6,7 +6,7 @@
 #include <atomic>
 #include <utility>
 
-#include "robot/settings_file.h"
+#include "broker.h"
 
 namespace cerberus::robot {
 
@@ -25,17 +25,9 @@ struct Arrived {
 };
 
 plugin::MqttServer server_of(const Properties& mqtt, std::string& prefix) {
-  plugin::MqttServer server;
-  for (const Property& one : mqtt) {
-    if (one.name == "host") server.host = one.value;
-    if (one.name == "port") server.port = static_cast<int>(g_ascii_strtoll(one.value.c_str(), nullptr, 10));
-    if (one.name == "username") server.user = one.value;
-    if (one.name == "ca-file") server.ca_file = one.value;
+  plugin::MqttServer server = broker_of(mqtt, "the list of cameras");
+  for (const Property& one : mqtt)
     if (one.name == "topic-prefix") prefix = one.value;
-    std::string error;
-    if (one.name == "password-file") server.password = read_secret(one.value, error).value_or("");
-    if (!error.empty()) g_printerr("cerberusd: the list of cameras: %s\n", error.c_str());
-  }
   for (const std::string_view topic : publish::Fleet::kTopics)
     server.topics.push_back(prefix + "/+/" + std::string(topic));
   return server;

@@ -273,6 +273,7 @@ std::string PageServer::state() {
         .string(robot::name(camera->state()));
     line.key("fault").text(camera->fault()).key("rate").fixed(camera->frames_a_second(), 1);
     line.key("head").text(camera->head_state()).key("recording").boolean(camera->is_recording());
+    line.key("recording-fault").text(camera->recording_fault());
     line.key("stage").string(camera->stage()).key("latency").fixed(camera->latency(), 1);
     if (camera->settings().recorder) {
       const auto free = record::Folder(camera->settings().recorder->folder).free_bytes();

@@ -93,6 +93,7 @@ bool Robot::open(Settings settings, std::string& error) {
   open_base();
   open_webhook();
   set_publishing();
+  take_topics();
   rtsp_.configure(settings_);
   for (const CameraSettings& camera : settings_.cameras) cameras_.push_back(make_camera(camera));
 #if HAVE_PAGE
@@ -130,6 +131,12 @@ void Robot::set_publishing() {
     if (!publishing_) publishing_ = Properties{{"host", ""}};
     publishing_->push_back({"post-topics", settings_.webhook->topics});
   }
+#endif
+}
+
+void Robot::take_topics() {
+#if HAVE_MQTT
+  retired_topics_.take(settings_);
 #endif
 }
 
@@ -256,6 +263,7 @@ void Robot::take(Settings settings) {
   if (new_webhook) open_webhook();
   if (new_base) open_base();
   set_publishing();
+  take_topics();
   if (new_rtsp) rtsp_.configure(settings_);
 
   std::vector<std::unique_ptr<Camera>> before = std::move(cameras_);
@@ -323,6 +331,10 @@ void Robot::tick() {
     sound = sound && camera->is_sound();
   }
   std::erase_if(leaving_, [](const auto& camera) { return camera->is_stopped(); });
+#if HAVE_MQTT
+  const auto stops = [](const auto& camera) { return camera->is_stopping(); };
+  if (shutting_down_ == 0) retired_topics_.tick(leaving_.empty() && std::ranges::none_of(cameras_, stops));
+#endif
   if (refused_) status += ", configuration refused";
   if (shutting_down_ == 0) rtsp_.tick();
   if (!rtsp_.fault().empty()) status += ", RTSP (" + rtsp_.fault() + ')';

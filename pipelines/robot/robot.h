@@ -15,6 +15,7 @@
 #include "page_server.h"
 #include "webhook.h"
 #endif
+#include "broker.h"
 #include "robot/backoff.h"
 #include "robot/mode.h"
 #include "robot/settings.h"
@@ -46,6 +47,7 @@ class Robot {
   void open_webhook();    // and closes the one before
   void open_base();       // the same
   void set_publishing();  // what the cameras publish: by MQTT, and for the webhook
+  void take_topics();     // that cameras leave at the broker
   SharedSettings shared(const CameraSettings& camera) const;
   std::optional<RtspSettings> rtsp_of(const CameraSettings& camera) const;
   void tick();
@@ -63,6 +65,9 @@ class Robot {
   RtspOutput rtsp_;  // outlives the cameras
   std::vector<std::unique_ptr<Camera>> cameras_;
   std::vector<std::unique_ptr<Camera>> leaving_;  // no longer in the configuration, until they have stopped
+#if HAVE_MQTT
+  RetiredTopics retired_topics_;
+#endif
 #if HAVE_PAGE
   std::unique_ptr<PageServer> page_;
   std::unique_ptr<Webhook> webhook_;

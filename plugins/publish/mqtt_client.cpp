@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
@@ -25,7 +26,7 @@ namespace {
 
 constexpr int kKeepalive = 10;              // seconds; the broker sends the will after 15
 constexpr std::size_t kMostWaiting = 1000;  // messages that are not retained
-constexpr std::chrono::seconds kBetweenTries{1}, kPatience{2};
+constexpr std::chrono::seconds kBetweenTries{1}, kPatience{2}, kFlush{1};
 constexpr std::size_t kLongestPayload = 256;       // bytes of a command
 constexpr std::size_t kLongestMessage = 4u << 20;  // bytes of any other message: a picture
 
@@ -60,6 +61,12 @@ class MqttClient::Connection : public std::enable_shared_from_this<Connection> {
         waiting_.push_back(std::move(message));
     }
     wake();
+  }
+
+  bool is_settled() {
+    const std::lock_guard guard(lock_);
+    return connected_ && waiting_.empty() && unacknowledged_ == 0 &&
+           std::ranges::none_of(retained_, [](const auto& one) { return one.second.due; });
   }
 
   void stop() {
@@ -131,6 +138,8 @@ class MqttClient::Connection : public std::enable_shared_from_this<Connection> {
     }
     mosquitto_connect_callback_set(
         client_, [](mosquitto*, void* self, int code) { static_cast<Connection*>(self)->on_connect(code); });
+    mosquitto_publish_callback_set(
+        client_, [](mosquitto*, void* self, int) { --static_cast<Connection*>(self)->unacknowledged_; });
     mosquitto_message_callback_set(client_, [](mosquitto*, void* self, const mosquitto_message* message) {
       static_cast<Connection*>(self)->on_message(*message);
     });
@@ -142,8 +151,8 @@ class MqttClient::Connection : public std::enable_shared_from_this<Connection> {
     int result = MOSQ_ERR_SUCCESS;
     while (result == MOSQ_ERR_SUCCESS) {
       if (quits()) {
-        if (is_connected() && !server_.status.empty())
-          mosquitto_publish(client_, nullptr, server_.status.c_str(), 7, "offline", 1, true);
+        send_waiting();
+        if (is_connected() && !server_.status.empty()) send({server_.status, "offline", true});
         flush();
         mosquitto_disconnect(client_);
         while (mosquitto_want_write(client_) && mosquitto_loop_write(client_, 1) == MOSQ_ERR_SUCCESS) {
@@ -166,10 +175,30 @@ class MqttClient::Connection : public std::enable_shared_from_this<Connection> {
     mosquitto_disconnect(client_);
   }
 
-  // Gives what is unsent to the socket, and the broker's acknowledgements a moment.
+  // Gives what is unsent to the socket until the broker has acknowledged all of it: the library keeps back what is more
+  // than 20 messages ahead.
   void flush() {
-    for (int k = 0; k < 20 && mosquitto_want_write(client_); ++k)
-      if (mosquitto_loop_write(client_, 1) != MOSQ_ERR_SUCCESS) return;
+    const auto end = std::chrono::steady_clock::now() + kFlush;
+    int result = MOSQ_ERR_SUCCESS;
+    while (result == MOSQ_ERR_SUCCESS && unacknowledged_ > 0 && std::chrono::steady_clock::now() < end) {
+      pollfd file{mosquitto_socket(client_), POLLIN, 0};
+      if (mosquitto_want_write(client_)) file.events |= POLLOUT;
+      ::poll(&file, 1, 100);
+      if (file.revents & (POLLIN | POLLHUP | POLLERR)) result = mosquitto_loop_read(client_, 1);
+      if (result == MOSQ_ERR_SUCCESS && mosquitto_want_write(client_))
+        result = mosquitto_loop_write(client_, 1);
+    }
+  }
+
+  void send(const publish::MqttMessage& message) {
+    ++unacknowledged_;
+    give(message);
+  }
+  void give(const publish::MqttMessage& message) {
+    const int result =
+        mosquitto_publish(client_, nullptr, message.topic.c_str(), static_cast<int>(message.payload.size()),
+                          message.payload.data(), 1, message.retain);
+    if (result != MOSQ_ERR_SUCCESS) --unacknowledged_;
   }
 
   void on_connect(int code) {
@@ -179,8 +208,7 @@ class MqttClient::Connection : public std::enable_shared_from_this<Connection> {
       return;
     }
     reported_ = false;
-    if (!server_.status.empty())
-      mosquitto_publish(client_, nullptr, server_.status.c_str(), 6, "online", 1, true);
+    if (!server_.status.empty()) send({server_.status, "online", true});
     for (const std::string& topic : server_.topics) mosquitto_subscribe(client_, nullptr, topic.c_str(), 1);
     if (!server_.commands.empty()) mosquitto_subscribe(client_, nullptr, (server_.commands + '+').c_str(), 1);
     const std::lock_guard guard(lock_);
@@ -213,10 +241,9 @@ class MqttClient::Connection : public std::enable_shared_from_this<Connection> {
         if (std::exchange(message.due, false)) all.push_back({topic, message.payload, true});
       for (publish::MqttMessage& message : waiting_) all.push_back(std::move(message));
       waiting_.clear();
+      unacknowledged_ += static_cast<int>(all.size());
     }
-    for (const publish::MqttMessage& message : all)
-      mosquitto_publish(client_, nullptr, message.topic.c_str(), static_cast<int>(message.payload.size()),
-                        message.payload.data(), 1, message.retain);
+    for (const publish::MqttMessage& message : all) give(message);
   }
 
   void fault(const std::string& text) {
@@ -234,6 +261,8 @@ class MqttClient::Connection : public std::enable_shared_from_this<Connection> {
   }
 
   const MqttServer server_;
+  std::atomic<int> unacknowledged_ =
+      0;                         // messages; the library sends them again after a loss of the connection
   mosquitto* client_ = nullptr;  // this and the next two: the client's thread only
   bool reported_ = false, refused_ = false;
   std::mutex callback_lock_;  // of listener_, held while it is called; never together with lock_
@@ -268,6 +297,11 @@ void MqttClient::publish(publish::MqttMessage message) {
     connection = connection_;
   }
   if (connection) connection->publish(std::move(message));
+}
+
+bool MqttClient::is_settled() const {
+  const std::lock_guard guard(lock_);
+  return connection_ && connection_->is_settled();
 }
 
 void MqttClient::stop() {

@@ -40,6 +40,8 @@ class MqttClient {
 
   void start(const MqttServer& server, Listener listener);
   void publish(publish::MqttMessage message);
+  // Whether the broker has taken everything that was published.
+  bool is_settled() const;
   // Says `offline` and disconnects. Waits two seconds at most: an attempt to connect may take longer, and then ends in
   // its own time. No call of the listener follows.
   void stop();

@@ -11,13 +11,17 @@
  * - `status`: `online`, and as last will `offline`; `mode`: the property `mode`, where it is set;
  * - `state`: `motion` (boolean), `objects` (the number of tracks); `pir`: `sensors` (0 nothing, 1 detection, 2 invalid);
  *   `pantilt`: `pan`, `tilt` (degrees), `moving`, twice a second while the head moves; `rule`: `rule`, `name`, `action`,
- *   `target` of `pirfusion`; each retained, and at every change;
+ *   `target` of `pirfusion`; each retained, and at every change. Where no frame comes for 2 s and twice their distance, and
+ *   at the end of the stream, nothing moves any more: `motion` and `moving` become false, sensors invalid, `rule` null;
  * - `track`: `event` (`appeared`, `updated` once a second, `left` 2 s after the last sight), `utc` (of the frame,
  *   where it is known) and the object as `motionjson` has it; not retained;
  * - `command/NAME`: an order, where `commands` lists NAME: `move-to`, `move-by` (payload: pan and tilt in degrees,
  *   `10 -5`), `stop`, `home`, `auto`, `follow` (the number of a track), which `pantiltsink` of the same pipeline and
  *   name (`head`) gets as its action signal, and `arm`, `disarm`, `privacy`, `picture`, which are for the application
- *   alone. Set `manual-timeout` of `pantiltsink` so that a move ends that is not repeated. Retained orders are ignored.
+ *   alone. Angles are from -360 to 360. Set `manual-timeout` of `pantiltsink` so that a move ends that is not repeated.
+ *   Retained orders are ignored;
+ * - `refused`: `command` (NAME) and `error` (string), where an order is refused or the head does not take it; not
+ *   retained.
  *
  * The action signal `publish` (name, bytes, retain) publishes what the application adds: `cerberusd` its topics `event`
  * and `picture`. It returns whether the element has been started.
@@ -44,7 +48,10 @@
 #include <gst/base/gstbasetransform.h>
 
 #include <algorithm>
+#include <chrono>
+#include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "cerberus/private/element.hpp"
@@ -57,6 +64,8 @@
 #include "shared/properties.hpp"
 #include "shared/stamps.hpp"
 #include "text/file.h"
+#include "text/json_line.h"
+#include "threads/in_order.h"
 
 namespace {
 
@@ -80,6 +89,7 @@ struct Settings {
   std::string commands;
   std::string head = "head";
   std::string mode;
+  bool recorder = false;
   std::string post_topics;
 };
 
@@ -106,6 +116,9 @@ const plugin::Property<Settings> kProperties[] = {
         .read_at_start(),
     property("head", &Settings::head, "Name of the head that orders are for"),
     property("mode", &Settings::mode, "What the topic mode says; empty = nothing"),
+    property("recorder", &Settings::recorder,
+             "Whether the application publishes the topic recording, so that Home Assistant finds it; false "
+             "= it does not"),
     property(
         "post-topics", &Settings::post_topics,
         "Topics whose messages are posted on the bus too, parted by blanks or commas, as track mode state; "
@@ -117,8 +130,11 @@ struct Private {
   plugin::MqttClient client;
   std::string mode_topic;        // object lock; empty: not started
   publish::BurstLimit refusals;  // client's thread
-  // Streaming thread, and start() and stop():
+  std::mutex lock;               // of report
   std::optional<publish::MqttReport> report;
+  threads::InOrder<std::vector<publish::MqttMessage>> messages;  // of report
+  GstClockID ticker = nullptr;                                   // start() and stop()
+  // Streaming thread, and start() and stop():
   plugin::Stamps stamps;
   std::vector<publish::MqttObject> objects;
   std::string discovery;
@@ -142,8 +158,46 @@ void publish_one(CerberusMqttPublish* self, publish::MqttMessage message) {
   self->priv->client.publish(std::move(message));
 }
 
-void publish_all(CerberusMqttPublish* self, std::vector<publish::MqttMessage> messages) {
-  for (publish::MqttMessage& message : messages) publish_one(self, std::move(message));
+std::chrono::microseconds now() {
+  return std::chrono::microseconds(g_get_monotonic_time());
+}
+
+// Publishes what ask(report) returns. Frames and the ticker come in threads of their own: what is published last is the
+// newest.
+template <typename Ask>
+void publish_from(CerberusMqttPublish* self, Ask ask) {
+  Private& p = *self->priv;
+  {
+    const std::lock_guard guard(p.lock);
+    if (!p.report) return;
+    std::vector<publish::MqttMessage> messages = ask(*p.report);
+    if (messages.empty()) return;
+    p.messages.put(std::move(messages));
+  }
+  p.messages.deliver([self](const std::vector<publish::MqttMessage>& messages) {
+    for (const publish::MqttMessage& message : messages) publish_one(self, message);
+  });
+}
+
+// Looks every second whether frames still come.
+void start_ticker(CerberusMqttPublish* self) {
+  g_autoptr(GstClock) clock = gst_system_clock_obtain();
+  self->priv->ticker = gst_clock_new_periodic_id(clock, gst_clock_get_time(clock) + GST_SECOND, GST_SECOND);
+  gst_clock_id_wait_async(
+      self->priv->ticker,
+      [](GstClock*, GstClockTime, GstClockID, gpointer data) -> gboolean {
+        auto* element = static_cast<CerberusMqttPublish*>(data);
+        guarded(element, [&] { publish_from(element, [](auto& report) { return report.check(now()); }); });
+        return TRUE;
+      },
+      gst_object_ref(self), gst_object_unref);
+}
+
+void stop_ticker(CerberusMqttPublish* self) {
+  GstClockID ticker = std::exchange(self->priv->ticker, nullptr);
+  if (ticker == nullptr) return;
+  gst_clock_id_unschedule(ticker);
+  gst_clock_id_unref(ticker);
 }
 
 // Action signal `publish`.
@@ -186,13 +240,28 @@ GstElement* find_head(GstElement* self, const std::string& name) {
   return found;
 }
 
+// Why an order was not carried out, for its sender.
+void answer(CerberusMqttPublish* self, const std::string& name, const std::string& error) {
+  text::JsonLine line;
+  line.open('{').key("command").text(name).key("error").text(error).close('}');
+  std::string payload(line.finish());
+  payload.pop_back();  // the newline
+  GST_OBJECT_LOCK(self);
+  const std::string mode_topic = self->priv->mode_topic;
+  GST_OBJECT_UNLOCK(self);
+  if (!mode_topic.empty())
+    publish_one(self,
+                {mode_topic.substr(0, mode_topic.rfind('/') + 1) + "refused", std::move(payload), false});
+}
+
 // In the client's thread.
 void obey(CerberusMqttPublish* self, const std::string& name, const std::string& payload) {
   const Settings settings = self->priv->settings.snapshot();
   std::string error;
   const auto command = publish::parse_mqtt_command(name, payload, settings.commands, error);
   if (!command) {
-    if (!self->priv->refusals.take(std::chrono::microseconds(g_get_monotonic_time()))) return;
+    if (!self->priv->refusals.take(now())) return;
+    answer(self, name, error);
     CERBERUS_ELEMENT_WARNING(self, RESOURCE, SETTINGS,
                              ("The MQTT command \"%s\" is refused: %s.", name.c_str(), error.c_str()),
                              (nullptr));
@@ -208,7 +277,10 @@ void obey(CerberusMqttPublish* self, const std::string& name, const std::string&
       g_signal_emit_by_name(head, signal, command->first, command->second, &done);
     else if (g_signal_lookup(signal, G_OBJECT_TYPE(head)) != 0)
       g_signal_emit_by_name(head, signal, &done);
+    const bool is_for_head = g_signal_lookup(signal, G_OBJECT_TYPE(head)) != 0;
     gst_object_unref(head);
+    if (is_for_head && !done && self->priv->refusals.take(now()))
+      answer(self, name, "the head does not take it now");
   }
   gst_element_post_message(
       GST_ELEMENT(self),
@@ -267,14 +339,14 @@ gboolean cerberus_mqtt_publish_start(GstBaseTransform* transform) {
       CERBERUS_ELEMENT_ERROR(self, RESOURCE, SETTINGS, (wrong), (nullptr));
       return FALSE;
     }
-    p.report.emplace(settings.prefix, camera);
     p.stamps.reset();
     p.discovery = settings.discovery;
-    server.status = p.report->topic("status");
+    const publish::MqttReport report(settings.prefix, camera);
+    server.status = report.topic("status");
     // What is not allowed is refused with a warning, where anything is; else nothing is subscribed.
-    if (!settings.commands.empty()) server.commands = p.report->topic("command/");
+    if (!settings.commands.empty()) server.commands = report.topic("command/");
     GST_OBJECT_LOCK(self);
-    p.mode_topic = p.report->topic("mode");
+    p.mode_topic = report.topic("mode");
     GST_OBJECT_UNLOCK(self);
     if (!settings.host.empty())
       p.client.start(server,
@@ -288,7 +360,13 @@ gboolean cerberus_mqtt_publish_start(GstBaseTransform* transform) {
                                 ("The MQTT broker cannot be reached; it is tried again: %s.", fault.c_str()),
                                 (nullptr));
                           }});
-    if (!settings.mode.empty()) publish_one(self, {p.report->topic("mode"), settings.mode, true});
+    if (!settings.mode.empty()) publish_one(self, {report.topic("mode"), settings.mode, true});
+    {
+      const std::lock_guard guard(p.lock);
+      p.report.emplace(report);
+    }
+    publish_from(self, [](auto& each) { return each.begin(); });
+    start_ticker(self);
     return TRUE;
   });
 }
@@ -299,7 +377,12 @@ gboolean cerberus_mqtt_publish_stop(GstBaseTransform* transform) {
   GST_OBJECT_LOCK(transform);
   p.mode_topic.clear();
   GST_OBJECT_UNLOCK(transform);
-  if (p.report) publish_all(self, p.report->end());
+  stop_ticker(self);
+  guarded(self, [&] { publish_from(self, [](auto& report) { return report.end(); }); });
+  {
+    const std::lock_guard guard(p.lock);
+    p.report.reset();
+  }
   p.client.stop();
   return TRUE;
 }
@@ -348,17 +431,21 @@ GstFlowReturn cerberus_mqtt_publish_transform_ip(GstBaseTransform* transform, Gs
     publish::MqttFrame frame;
     if (GST_CLOCK_TIME_IS_VALID(time)) frame.time = plugin::time_of(time);
     frame.utc = plugin::known_time(stamp.utc);
+    frame.arrival = now();
     read_frame(p, buffer, stamp, frame);
-    if (!p.discovery.empty()) publish_all(self, p.report->discovery_of(frame, p.discovery));
-    publish_all(self, p.report->update(frame));
+    if (!p.discovery.empty()) {
+      const bool recorder = p.settings.snapshot().recorder;
+      publish_from(self, [&](auto& report) { return report.discovery_of(frame, p.discovery, recorder); });
+    }
+    publish_from(self, [&](auto& report) { return report.update(frame); });
     return GST_FLOW_OK;
   });
 }
 
 gboolean cerberus_mqtt_publish_sink_event(GstBaseTransform* transform, GstEvent* event) {
   auto* self = cerberus_mqtt_publish_self(transform);
-  if (GST_EVENT_TYPE(event) == GST_EVENT_EOS && self->priv->report)
-    guarded(self, [&] { publish_all(self, self->priv->report->end()); });
+  if (GST_EVENT_TYPE(event) == GST_EVENT_EOS)
+    guarded(self, [&] { publish_from(self, [](auto& report) { return report.end(); }); });
   return GST_BASE_TRANSFORM_CLASS(cerberus_mqtt_publish_parent_class())->sink_event(transform, event);
 }
 

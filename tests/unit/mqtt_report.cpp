@@ -120,6 +120,60 @@ START_TEST(a_frame_that_no_detector_saw_says_nothing_about_motion) {
 }
 END_TEST
 
+START_TEST(nothing_moves_any_more_when_the_stream_ends_or_no_frame_comes) {
+  const std::vector<MqttObject> one{walker(4)};
+  const std::vector<std::uint8_t> readings{0, 1};
+  for (const bool ends : {true, false}) {
+    MqttReport report("cerberus", "front");
+    ck_assert(json::parse(find(report.begin(), "cerberus/front/state")->payload)["motion"] == false);
+    MqttFrame moving = frame(seconds(1), one);
+    moving.arrival = seconds(500);
+    moving.sensors = readings;
+    moving.head = {10, 0, true};
+    moving.decision = {1, "camera", "track", 4};
+    report.update(moving);
+    moving.time += milliseconds(400);
+    moving.arrival += milliseconds(400);
+    ck_assert(report.update(moving).empty());
+    ck_assert(report.check(seconds(503)).empty());  // 2 s, and twice the .4 s between two frames
+    const auto out = ends ? report.end() : report.check(seconds(503) + milliseconds(200));
+    ck_assert(json::parse(find(out, "cerberus/front/state")->payload) ==
+              json({{"motion", false}, {"objects", 0}}));
+    ck_assert(json::parse(find(out, "cerberus/front/pantilt")->payload)["moving"] == false);
+    ck_assert(json::parse(find(out, "cerberus/front/pir")->payload) == json({{"sensors", {2, 2}}}));
+    ck_assert(json::parse(find(out, "cerberus/front/rule")->payload)["target"] == nullptr);
+    ck_assert(tracks(out) == Words{"left 4"});
+    ck_assert(report.check(seconds(600)).empty() && report.end().empty());
+    moving.arrival = seconds(700);
+    ck_assert(json::parse(find(report.update(moving), "cerberus/front/state")->payload)["motion"] == true);
+  }
+}
+END_TEST
+
+START_TEST(a_stream_without_a_detector_ends_without_a_word_about_motion) {
+  MqttReport report("cerberus", "front");
+  report.update({});
+  ck_assert(report.end().empty());
+}
+END_TEST
+
+START_TEST(every_retained_topic_of_a_camera_is_known) {
+  const MqttReport report("cerberus", "front");
+  const auto has = [](const Words& all, const char* topic) { return std::ranges::count(all, topic) == 1; };
+  const Words little = report.retained_topics("", {}),
+              all = report.retained_topics("homeassistant", {3, true, true});
+  ck_assert_uint_eq(little.size(), 4);
+  for (const char* topic :
+       {"cerberus/front/status", "cerberus/front/mode", "cerberus/front/state", "cerberus/front/rule"})
+    ck_assert(has(little, topic) && has(all, topic));
+  for (const char* topic :
+       {"cerberus/front/pir", "cerberus/front/pantilt", "cerberus/front/event", "cerberus/front/recording",
+        "homeassistant/binary_sensor/cerberus_front/pir_2/config",
+        "homeassistant/sensor/cerberus_front/tilt/config"})
+    ck_assert_msg(has(all, topic), "%s", topic);
+}
+END_TEST
+
 START_TEST(a_moving_head_is_reported_twice_a_second_and_when_it_rests) {
   MqttReport report("cerberus", "front");
   MqttFrame now;
@@ -140,8 +194,9 @@ END_TEST
 
 START_TEST(home_assistant_finds_each_sensor_once_and_where_it_is_published) {
   const MqttReport report("cerberus", "front");
-  const std::vector<MqttMessage> all = report.discovery("homeassistant", 2, true);
-  ck_assert_uint_eq(all.size(), 8);  // motion, objects, mode, rule, pir 0 and 1, pan, tilt
+  const std::vector<MqttMessage> all = report.discovery("homeassistant", {2, true, true});
+  // motion, objects, mode, rule, pir 0 and 1, recording and its fault, pan, tilt
+  ck_assert_uint_eq(all.size(), 10);
   std::vector<std::string> identities;
   for (const MqttMessage& one : all) {
     const json read = json::parse(one.payload);
@@ -152,7 +207,7 @@ START_TEST(home_assistant_finds_each_sensor_once_and_where_it_is_published) {
   ck_assert(std::ranges::adjacent_find(identities) == identities.end());
   const MqttMessage* pir = find(all, "homeassistant/binary_sensor/cerberus_front/pir_1/config");
   ck_assert(pir && json::parse(pir->payload)["state_topic"] == "cerberus/front/pir");
-  ck_assert_uint_eq(report.discovery("homeassistant", 0, false).size(), 3);
+  ck_assert_uint_eq(report.discovery("homeassistant", {}).size(), 3);
 }
 END_TEST
 
@@ -160,13 +215,13 @@ START_TEST(discovery_is_repeated_only_when_sensors_or_head_are_others) {
   MqttReport report("cerberus", "front");
   const std::array<std::uint8_t, 2> sensors{};
   MqttFrame frame;
-  ck_assert_uint_eq(report.discovery_of(frame, "homeassistant").size(), 3);
-  ck_assert(report.discovery_of(frame, "homeassistant").empty());
+  ck_assert_uint_eq(report.discovery_of(frame, "homeassistant", false).size(), 3);
+  ck_assert(report.discovery_of(frame, "homeassistant", false).empty());
   frame.sensors = sensors;
-  ck_assert_uint_eq(report.discovery_of(frame, "homeassistant").size(), 6);  // and rule, pir 0 and 1
+  ck_assert_uint_eq(report.discovery_of(frame, "homeassistant", false).size(), 6);  // and rule, pir 0 and 1
   frame.head.emplace();
-  ck_assert_uint_eq(report.discovery_of(frame, "homeassistant").size(), 8);  // and pan, tilt
-  ck_assert(report.discovery_of(frame, "homeassistant").empty());
+  ck_assert_uint_eq(report.discovery_of(frame, "homeassistant", false).size(), 8);  // and pan, tilt
+  ck_assert(report.discovery_of(frame, "homeassistant", false).empty());
 }
 END_TEST
 
@@ -176,21 +231,17 @@ START_TEST(an_order_is_taken_only_where_it_is_allowed_and_whole) {
   ck_assert(move && move->first == 10 && move->second == -5.5);
   ck_assert(parse_mqtt_command("stop", "PRESS", "stop move-to", error).has_value());
   ck_assert(parse_mqtt_command("follow", "7", "follow", error)->first == 7);
-  for (const auto& [name, payload, allowed] :
-       std::vector<std::array<const char*, 3>>{{"move-to", "10 -5", ""},
-                                               {"move-to", "10 -5", "move-by"},
-                                               {"move", "1 1", "move-to"},
-                                               {"move-to", "10", "move-to"},
-                                               {"move-to", "10 x", "move-to"},
-                                               {"move-to", "10 5 6", "move-to"},
-                                               {"move-to", "nan 0", "move-to"},
-                                               {"move-by", "1e999 0", "move-by"},
-                                               {"follow", "-1", "follow"},
-                                               {"follow", "1.5", "follow"},
-                                               {"follow", "4294967296", "follow"},
-                                               {"", "", ""},
-                                               {"format", "", "format"},
-                                               {"stop", "", "st op"}})
+  for (const auto& [name, payload, allowed] : std::vector<std::array<const char*, 3>>{
+           {"move-to", "10 -5", ""},           {"move-to", "10 -5", "move-by"},
+           {"move", "1 1", "move-to"},         {"move-to", "10", "move-to"},
+           {"move-to", "10 x", "move-to"},     {"move-to", "10 5 6", "move-to"},
+           {"move-to", "nan 0", "move-to"},    {"move-by", "1e999 0", "move-by"},
+           {"move-to", "1e9 0", "move-to"},    {"move-to", "0 -360.5", "move-to"},
+           {"move-by", "-1e9 0", "move-by"},   {"move-to", "inf 0", "move-to"},
+           {"follow", "-1", "follow"},         {"follow", "0", "follow"},
+           {"follow", "nan", "follow"},        {"follow", "1.5", "follow"},
+           {"follow", "4294967296", "follow"}, {"", "", ""},
+           {"format", "", "format"},           {"stop", "", "st op"}})
     ck_assert_msg(!parse_mqtt_command(name, payload, allowed, error), "%s %s %s", name, payload, allowed);
   ck_assert(!parse_mqtt_command("stop", std::string(65, 'x'), "stop", error));
 }
@@ -327,7 +378,9 @@ int main() {
        a_stream_that_begins_anew_has_no_track_of_the_one_before,
        states_are_retained_and_published_when_they_change,
        a_frame_that_no_detector_saw_says_nothing_about_motion,
-       a_moving_head_is_reported_twice_a_second_and_when_it_rests,
+       nothing_moves_any_more_when_the_stream_ends_or_no_frame_comes,
+       a_stream_without_a_detector_ends_without_a_word_about_motion,
+       every_retained_topic_of_a_camera_is_known, a_moving_head_is_reported_twice_a_second_and_when_it_rests,
        home_assistant_finds_each_sensor_once_and_where_it_is_published,
        discovery_is_repeated_only_when_sensors_or_head_are_others,
        an_order_is_taken_only_where_it_is_allowed_and_whole,

@@ -164,9 +164,9 @@ function enableButtons() {
 function showState() {
   enableButtons();
   at('mode-now').textContent = state.mode;
-  const on = isRecording();
-  at('recording').textContent = on ? '\u25cf REC' : 'not recording';
-  at('recording').className = on ? 'on' : '';
+  const on = isRecording(), fails = state.cameras.some((camera) => camera['recording-fault']);
+  at('recording').textContent = fails ? 'RECORDING FAILS' : on ? '\u25cf REC' : 'not recording';
+  at('recording').className = fails ? 'fails' : on ? 'on' : '';
   const camera = mine();
   if (!camera) return;
   if (state.mode === 'privacy') {
