@@ -181,10 +181,15 @@ void post_report(CerberusEventRecorder* self, const plugin::FileReport& report) 
 }
 
 GstFlowReturn no_times(CerberusEventRecorder* self, GstPad* pad) {
+  const bool raw = input_of(pad).track == plugin::kAnalysisTrack;
   CERBERUS_ELEMENT_ERROR(
       self, STREAM, FORMAT,
-      ("The stream on the pad \"%s\" has no time stamps, which a recording needs.", GST_PAD_NAME(pad)),
-      ("put a parser in front (h264parse, h265parse, jpegparse)"));
+      ("The stream on the pad \"%s\" has no time stamps, which a recording needs: %s.", GST_PAD_NAME(pad),
+       raw ? "set do-timestamp of its source, or take these frames from the branch that is encoded"
+           : "put a parser in front (h264parse, h265parse, jpegparse, aacparse), and a frame rate into its "
+             "caps, or set "
+             "do-timestamp of its source"),
+      (nullptr));
   return GST_FLOW_ERROR;
 }
 
@@ -215,6 +220,7 @@ bool take_caps(CerberusEventRecorder* self, GstPad* pad, GstEvent* event) {
 
 void take_eos(CerberusEventRecorder* self, GstPad* pad, GstEvent* event) {
   self->priv->gate.has_data(GST_ELEMENT(self));
+  if (self->priv->session.lacks_times(input_of(pad))) no_times(self, pad);
   if (!self->priv->session.end_of_stream(input_of(pad))) return;
   const plugin::StreamEnd::Pending end = self->priv->end.expect(gst_event_get_seqnum(event));
   self->priv->session.when_done([self, end] { self->priv->end.post(GST_ELEMENT(self), end); });

@@ -2,6 +2,7 @@
 #include "session.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "shared/clock_times.hpp"
 
@@ -50,6 +51,7 @@ bool read_unit(const Input& input, GstBuffer* buffer, record::Unit& unit) {
 void forget_stream(Input& input) {
   input.eos = false;
   input.decode.reset();
+  input.filler.reset();
   gst_segment_init(&input.segment, GST_FORMAT_UNDEFINED);
 }
 
@@ -133,6 +135,7 @@ std::string Session::begin(Writer::Report report, Writer::Warn warn) {
   for (const auto& input : inputs_) {
     input->notes.reset();
     input->stamps.reset();
+    input->untimed_reported = false;
   }
   if (has_analysis()) recorder_.expect_analysis();
   return fault;
@@ -156,6 +159,13 @@ void Session::end() {
 
 bool Session::set_caps(Input& input, GstCaps* caps) {
   const std::lock_guard guard(lock_);
+  gint frames = 0, seconds = 0;
+  const bool has_rate =
+      gst_structure_get_fraction(gst_caps_get_structure(caps, 0), "framerate", &frames, &seconds) &&
+      frames > 0 && seconds > 0;
+  input.filler.set_distance(has_rate ? std::optional(record::Time(static_cast<gint64>(
+                                           gst_util_uint64_scale_int(GST_SECOND, seconds, frames))))
+                                     : std::nullopt);
   if (input.track <= 0) {
     input.notes.set_caps(caps);
     if (input.track == kAnalysisTrack || !has_analysis()) triggers_.frame = input.notes.size();
@@ -259,8 +269,9 @@ bool Session::add_audio(Input& input, GstBuffer* buffer) {
 }
 
 bool Session::add_analysis(Input& input, GstBuffer* buffer) {
+  if (input.segment.format != GST_FORMAT_TIME) return false;
   const GstClockTime time = running_time_of(input.segment, buffer);
-  if (!GST_CLOCK_TIME_IS_VALID(time)) return false;
+  if (!GST_CLOCK_TIME_IS_VALID(time)) return true;  // outside of the segment: it is not shown
   const CerberusStamp stamp = input.stamps.frame(input.pad, buffer, time, camera_name_);
   add_note(input, buffer, stamp, time_of(time));
   if (const auto trigger = trigger_at(buffer, time_of(time))) apply(*trigger, time_of(time));
@@ -269,19 +280,49 @@ bool Session::add_analysis(Input& input, GstBuffer* buffer) {
   return true;
 }
 
+// The buffer, with a time: itself, a copy that has one, or nullptr where nothing tells it. Under the lock.
+GstBuffer* Session::timed(Input& input, GstBuffer* buffer, bool& hopeless) {
+  record::TimeFiller::Times times{known_time(GST_BUFFER_PTS(buffer)), known_time(GST_BUFFER_DTS(buffer)),
+                                  known_time(GST_BUFFER_DURATION(buffer))};
+  if (input.track == kAnalysisTrack) times.decode.reset();  // raw pictures are matched by when they are shown
+  using Result = record::TimeFiller::Result;
+  const Result result = input.filler.fill(times);
+  if (result == Result::timed) return gst_buffer_ref(buffer);
+  hopeless = result == Result::hopeless;
+  if (result != Result::placed) return nullptr;
+  GstBuffer* copy = gst_buffer_copy(buffer);
+  GST_BUFFER_PTS(copy) = clock_time(times.presentation ? times.presentation : times.decode);
+  GST_BUFFER_DTS(copy) = clock_time(times.decode);
+  return copy;
+}
+
 bool Session::add(Input& input, GstBuffer* buffer) {
   if (input.track == 0 && !live_) live_ = is_live(input.pad);
-  std::string fault;
+  std::string fault, untimed;
   const bool added = [&] {
     const std::lock_guard guard(lock_);
-    if (input.track > 0) return add_audio(input, buffer);
+    bool hopeless = false;
+    const std::unique_ptr<GstBuffer, void (*)(GstBuffer*)> with_time(
+        timed(input, buffer, hopeless), [](GstBuffer* one) { gst_buffer_unref(one); });
+    if (with_time.get() != buffer && !std::exchange(input.untimed_reported, true))
+      untimed = "Buffers without a time stamp come on the pad \"" + std::string(GST_PAD_NAME(input.pad)) +
+                "\": each one takes the place after the one before, or is left out where nothing tells it.";
+    if (!with_time) return !hopeless;
+    if (input.track > 0) return add_audio(input, with_time.get());
     fault = apply_settings();
-    const bool done = input.track == 0 ? add_video(input, buffer) : add_analysis(input, buffer);
+    const bool done =
+        input.track == 0 ? add_video(input, with_time.get()) : add_analysis(input, with_time.get());
     if (fault.empty()) fault = unplaced_fault();
     return done;
   }();
-  if (!fault.empty()) warn_(fault);
+  for (const std::string& text : {untimed, fault})
+    if (!text.empty() && added) warn_(text);
   return added;
+}
+
+bool Session::lacks_times(const Input& input) {
+  const std::lock_guard guard(lock_);
+  return input.filler.lacks_times();
 }
 
 void Session::wait_for_disk(GstPad* pad) {

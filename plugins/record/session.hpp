@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "frame_notes.hpp"
+#include "record/time_filler.h"
 #include "recorder_settings.hpp"
 
 namespace cerberus::plugin {
@@ -23,6 +24,8 @@ struct Input {
   int format = -1;                     // of the encoded stream
   std::optional<record::Time> decode;  // of the newest unit
   bool eos = false;
+  record::TimeFiller filler;
+  bool untimed_reported = false;
   FrameNotes notes;  // of video and analysis
   Stamps stamps;     // of the analysis
 };
@@ -41,7 +44,8 @@ class Session {
   std::string begin(Writer::Report report, Writer::Warn warn);
   void end();
 
-  // A pad's stream. False: the buffer has no time, or the caps lack the picture's size.
+  // A pad's stream. False: the stream has no times, or the caps lack the picture's size. A buffer without a time takes the
+  // place after the one before.
   bool set_caps(Input& input, GstCaps* caps);
   void set_segment(Input& input, GstEvent* event);
   void begin_stream(Input& input);
@@ -50,6 +54,8 @@ class Session {
   bool add(Input& input, GstBuffer* buffer);
   // Waits for the disk where the stream is not live.
   void wait_for_disk(GstPad* pad);
+  // Whether buffers came, and none of them had a time.
+  bool lacks_times(const Input& input);
   // Returns whether all linked pads are at their end: then all files are closed.
   bool end_of_stream(Input& input);
   // Calls done() once the files that are closed are complete.
@@ -66,6 +72,7 @@ class Session {
 
  private:
   std::string apply_settings();
+  GstBuffer* timed(Input& input, GstBuffer* buffer, bool& hopeless);
   void apply(const Trigger& trigger, record::Time time);
   void add_note(Input& input, GstBuffer* buffer, const CerberusStamp& stamp, record::Time time);
   void advance_journal();

@@ -621,6 +621,80 @@ GST_START_TEST(two_recorders_in_one_folder_overwrite_nothing) {
 }
 GST_END_TEST
 
+// Of frame 60 the time is missing; with it the next ones, where `__i__` is 1.
+GST_START_TEST(a_buffer_without_a_time_takes_the_place_after_the_one_before) {
+  const guint32 last = __i__ == 0 ? 60 : 64;
+  Rig rig;
+  rig.start();
+  rig.play_to(50);
+  rig.start_event();
+  rig.play_to(59);
+  for (; rig.next <= last; ++rig.next)
+    fail_unless_equals_int(rig.video->push(unit(rig.next, GST_CLOCK_TIME_NONE, rig.next % 10 == 0)),
+                           GST_FLOW_OK);
+  rig.play_to(100);
+  rig.finish();
+  const auto frames = read_back(rig.folder.path() + "/1.mp4");
+  fail_unless(numbers_of(frames) == range(20, 100));
+  for (const Frame& frame : frames) fail_unless_equals_uint64(frame.pts, (frame.number - 20) * kFrame);
+}
+GST_END_TEST
+
+GST_START_TEST(a_buffer_without_a_time_is_one_warning_and_no_error_on_every_pad) {
+  Rig rig;
+  rig.audio = std::make_unique<Stream>(rig.element, "audio_0", kAac);
+  rig.analysis = std::make_unique<Stream>(rig.element, "analysis",
+                                          "video/x-raw, format=GRAY8, width=320, height=240, framerate=25/1");
+  rig.start();
+  for (guint32 k = 0; k < 20; ++k) {
+    rig.play_to(k);
+    const bool timed = k % 5 != 3;
+    for (Stream* stream : {rig.audio.get(), rig.analysis.get()}) {
+      GstBuffer* buffer = gst_buffer_new_allocate(nullptr, 320 * 240, nullptr);
+      if (timed) GST_BUFFER_PTS(buffer) = k * kFrame;
+      fail_unless_equals_int(stream->push(buffer), GST_FLOW_OK);
+    }
+  }
+  int warnings = 0;
+  while (GstMessage* message = gst_bus_pop_filtered(
+             rig.bus, static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR))) {
+    fail_unless(GST_MESSAGE_TYPE(message) == GST_MESSAGE_WARNING);
+    g_autoptr(GError) error = nullptr;
+    gst_message_parse_warning(message, &error, nullptr);
+    fail_unless(strstr(error->message, "without a time stamp"), "%s", error->message);
+    ++warnings;
+    gst_message_unref(message);
+  }
+  fail_unless_equals_int(warnings, 2);
+}
+GST_END_TEST
+
+// Sooner or later: at the end of a short stream, after 100 buffers of a long one.
+GST_START_TEST(a_stream_in_which_no_time_ever_comes_is_an_error_with_advice_for_its_pad) {
+  const bool is_raw = __i__ & 1, is_long = __i__ & 2;
+  Rig rig;
+  rig.analysis =
+      std::make_unique<Stream>(rig.element, "analysis", "video/x-raw, format=GRAY8, width=320, height=240");
+  rig.start();
+  rig.play_to(5);
+  Stream& stream = is_raw ? *rig.analysis : *rig.video;
+  if (!is_raw) rig.video->send(gst_event_new_flush_stop(TRUE));
+  if (!is_raw) rig.video->push_segment();
+  GstFlowReturn flow = GST_FLOW_OK;
+  for (int k = 0; k < (is_long ? 200 : 20) && flow == GST_FLOW_OK; ++k) {
+    GstBuffer* buffer = unit(0, GST_CLOCK_TIME_NONE, true);
+    flow = stream.push(buffer);
+  }
+  fail_unless_equals_int(flow, is_long ? GST_FLOW_ERROR : GST_FLOW_OK);
+  if (!is_long) stream.end();
+  g_autoptr(GstMessage) message = rig.take(GST_MESSAGE_ERROR);
+  g_autoptr(GError) error = nullptr;
+  gst_message_parse_error(message, &error, nullptr);
+  fail_unless(strstr(error->message, is_raw ? "do-timestamp" : "h264parse"), "%s", error->message);
+  fail_unless(is_raw == !strstr(error->message, "parser"), "%s", error->message);
+}
+GST_END_TEST
+
 static Suite* eventrecorder_suite() {
   watch_library_log();
   Suite* suite = suite_create("eventrecorder");
@@ -646,6 +720,9 @@ static Suite* eventrecorder_suite() {
   tcase_add_test(tests, a_started_event_goes_on_where_times_fall_back_until_it_is_stopped);
   tcase_add_test(tests, two_recorders_in_one_folder_overwrite_nothing);
   tcase_add_loop_test(tests, no_frame_is_lost_or_doubled_between_the_files_of_an_event, 0, 4);
+  tcase_add_loop_test(tests, a_buffer_without_a_time_takes_the_place_after_the_one_before, 0, 2);
+  tcase_add_test(tests, a_buffer_without_a_time_is_one_warning_and_no_error_on_every_pad);
+  tcase_add_loop_test(tests, a_stream_in_which_no_time_ever_comes_is_an_error_with_advice_for_its_pad, 0, 4);
   suite_add_tcase(suite, tests);
   TCase* random = tcase_create("random events");
   tcase_set_timeout(random, getenv("CERBERUS_EVENTS") ? 1000 : 60);
