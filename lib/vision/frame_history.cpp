@@ -10,6 +10,10 @@ double seconds_between(FrameHistory::Time from, FrameHistory::Time to) {
   return static_cast<double>((to - from).count()) / 1e9;
 }
 
+FrameHistory::Time duration(double seconds) {
+  return FrameHistory::Time(static_cast<FrameHistory::Time::rep>(seconds * 1e9));
+}
+
 }  // namespace
 
 void FrameHistory::lose() {
@@ -20,6 +24,8 @@ std::optional<double> FrameHistory::repeat(std::optional<Time> time, double nomi
   if (!any_) return std::nullopt;
   ++repeats_;
   damage_ |= damaged;
+  const double even = usual_ > 0 ? usual_ : nominal > 0 ? nominal : parameters_.unknown_distance;
+  if (is_outlier(time, even)) time = *shown_ + duration(even);
   shown_ = time;
   if (time && previous_ && *time > *previous_) {
     const double seconds = seconds_between(*previous_, *time);
@@ -27,13 +33,70 @@ std::optional<double> FrameHistory::repeat(std::optional<Time> time, double nomi
         std::max(held_, std::min(seconds, damaged ? parameters_.longest_damage : parameters_.longest_repeat));
     return seconds;
   }
-  return repeats_ * (usual_ > 0 ? usual_ : nominal > 0 ? nominal : parameters_.unknown_distance);
+  return repeats_ * even;
 }
 
-FrameHistory::Step FrameHistory::next(std::optional<Time> time, double nominal) {
-  if (!any_) usual_ = 0;  // the rhythm of a new scene is learnt anew
-  const double rhythm = usual_ > 0 ? usual_ : nominal;
+void FrameHistory::begin_picture(std::optional<Time> time) {
+  any_ = true;
+  lost_ = repeats_ = 0;
+  held_ = 0;
+  damage_ = false;
+  previous_ = shown_ = time;
+}
+
+// Asked once a frame. rhythm: of the stream, seconds.
+bool FrameHistory::is_outlier(std::optional<Time> time, double rhythm) {
+  const double step = any_ && shown_ && time ? seconds_between(*shown_, *time) : 0;
+  const double gap = std::max(parameters_.gap_seconds, parameters_.gap_factor * rhythm);
+  const double least = distrusted_ ? gap : parameters_.outlier_factor * rhythm;
+  const bool far = step > std::max(distrusted_ ? gap : parameters_.outlier_forwards, least) ||
+                   -step > std::max(distrusted_ ? gap : parameters_.outlier_backwards, least);
+  outliers_ = far ? outliers_ + 1 : 0;
+  if (outliers_ <= parameters_.outliers) return far;
+  outliers_ = 0;
+  return false;
+}
+
+// Where the times go on from before a time that has ended the scene, that one was wrong, and more like it are to be
+// expected. What was learnt from it is forgotten.
+void FrameHistory::take_back(std::optional<Time> time) {
+  if (!ended_) return;
+  const double even = ended_->usual > 0 ? ended_->usual : parameters_.unknown_distance;
+  const double since = time ? seconds_between(ended_->at, *time) : 0;
+  const bool on = since > 0 && since <= std::max(parameters_.gap_seconds, parameters_.gap_factor * even);
+  if (on) {
+    distrusted_ = true;
+    usual_ = ended_->usual;
+    previous_ = shown_ = stamp_ = clock_ = *time - duration(even);
+    late_ = 0;
+  }
+  if (on || ++ended_->frames > parameters_.outliers) ended_.reset();
+}
+
+// A frame whose time is an outlier.
+FrameHistory::Step FrameHistory::pass_over(Time time, double even) {
   Step step;
+  step.fresh = false;
+  step.backwards = stamp_ && time < *stamp_;
+  step.previous = previous_;
+  step.time = *shown_ + duration((1 + lost_) * even);
+  step.seconds = previous_ ? seconds_between(*previous_, *step.time) : (1 + lost_ + repeats_) * even;
+  clock_ += duration(step.seconds);
+  begin_picture(step.time);
+  return step;
+}
+
+FrameHistory::Step FrameHistory::next(std::optional<Time> time, double nominal, bool marked) {
+  if (!any_) usual_ = 0;  // the rhythm of a new scene is learnt anew
+  if (!any_ || marked) ended_.reset();
+  take_back(time);
+  const double rhythm = usual_ > 0 ? usual_ : nominal;
+  const double even = rhythm > 0 ? rhythm : parameters_.unknown_distance;
+  if (marked) outliers_ = 0;
+  if (!marked && is_outlier(time, even)) return pass_over(*time, even);
+  const std::optional<Ended> last = shown_ ? std::optional(Ended{*shown_, usual_}) : std::nullopt;
+  Step step;
+  step.time = time;
   step.backwards = any_ && time && stamp_ && *time < *stamp_;
   if (step.backwards &&
       seconds_between(*time, *stamp_) > std::max(parameters_.gap_seconds, parameters_.gap_factor * rhythm))
@@ -41,17 +104,14 @@ FrameHistory::Step FrameHistory::next(std::optional<Time> time, double nominal) 
   else if (any_)
     follow(step, time, rhythm);
   step.broken = any_ && step.fresh;
+  if (step.broken) ended_ = last;
   ordered_ = time && (step.fresh || (ordered_ && !step.backwards && late_ == 0));
   step.repeatable = !step.fresh && ordered_ && step.seconds <= parameters_.longest_repeat;
   if (step.fresh) {
     stamp_.reset();
     late_ = 0;
   }
-  any_ = true;
-  lost_ = repeats_ = 0;
-  held_ = 0;
-  damage_ = false;
-  previous_ = shown_ = time;
+  begin_picture(time);
   if (!time) return step;
   stamp_ = time;
   if (late_ == 0) clock_ = *time;
@@ -72,7 +132,7 @@ void FrameHistory::follow(Step& step, std::optional<Time> time, double rhythm) {
   }
   const double seconds = *time > clock_ ? seconds_between(clock_, *time) : 0;
   if (seconds <= std::max(parameters_.least_seconds, late_ > 0 ? even / 4 : 0)) {
-    clock_ += Time(static_cast<Time::rep>(even * 1e9));
+    clock_ += duration(even);
     if (++late_ > parameters_.late_frames) late_ = 0;
     return;
   }

@@ -18,6 +18,12 @@ class FrameHistory {
     // moved has moved too far then for a difference of neighbours to mean anything. Live cameras that stall for a
     // moment stay below gap_seconds; cameras that send a frame every few seconds are judged by their own distance.
     double gap_factor = 3, gap_seconds = .25;
+    // Steps of the times by more than this, and by more than outlier_factor usual distances, are no gap: the time of a
+    // single frame is wrong, unless those of more than `outliers` in a row are. The frames are taken to follow at the
+    // usual distance until then. In a stream that has shown a wrong gap, every gap is judged so. Chosen: a camera that stalls comes back within outlier_forwards, or its stream begins
+    // anew; outlier_backwards is beyond what a decoder reorders.
+    double outlier_forwards = 10, outlier_backwards = 1, outlier_factor = 25;
+    int outliers = 2;
     double smoothing = .1;        // weight of a new distance in the usual one: about the last ten frames
     double missing_factor = 1.5;  // usual distances from which on a frame is missing: half way to two
     double least_seconds = 1e-4;  // a smaller distance is no time of a camera, whatever the timestamps say
@@ -56,17 +62,23 @@ class FrameHistory {
         false;  // the previous frame is recent enough to be repeated by this one, as times in order tell
     double seconds = 0;            // since the previous frame; 0: none, or not known
     std::optional<Time> previous;  // running time of the previous frame, where it has one
+    // That of this frame: its own, or, where that is an outlier, the one at the usual distance.
+    std::optional<Time> time;
   };
 
   // Records a frame with a picture of its own. time: its running time, where it has one. nominal: frame distance of the
-  // caps in seconds, 0 = variable.
-  Step next(std::optional<Time> time, double nominal);
+  // caps in seconds, 0 = variable. marked: the source says that the stream does not go on: its time is no outlier.
+  Step next(std::optional<Time> time, double nominal, bool marked = false);
   // Returns whether frames are missing between the last one, repeated or not, and this: a leaky queue marks the gap by
   // DISCONT, as a cut is marked.
   bool misses_frames(std::optional<Time> time, double nominal) const;
 
  private:
+  void begin_picture(std::optional<Time> time);
   void follow(Step& step, std::optional<Time> time, double rhythm);
+  void take_back(std::optional<Time> time);
+  bool is_outlier(std::optional<Time> time, double rhythm);
+  Step pass_over(Time time, double even);
 
   Parameters parameters_;
   bool any_ = false;  // a frame of this scene was seen
@@ -82,7 +94,15 @@ class FrameHistory {
   Time clock_{};                  // the time that was assumed for it
   int late_ = 0;                  // frames in a row that were older than that
   double usual_ = 0;              // smoothed distance between frames, s
-  bool ordered_ = true;           // all frames of this scene had times, each later than the one before
+  struct Ended {
+    Time at{};         // of the last frame of the scene before
+    double usual = 0;  // its usual distance
+    int frames = 0;    // since then
+  };
+  std::optional<Ended> ended_;  // by the time of one of the last frames
+  bool distrusted_ = false;     // such an end was wrong: every gap may be an outlier
+  int outliers_ = 0;     // frames in a row, up to the last, whose times are far from that of the frame before
+  bool ordered_ = true;  // all frames of this scene had times, each later than the one before
 };
 
 }  // namespace cerberus::vision

@@ -154,7 +154,9 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   const bool marked = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) && !camera.connected &&
                       !(measures && priv.history.misses_frames(time, nominal));
   if (marked) priv.history.drop();
-  const vision::FrameHistory::Step step = priv.history.next(time, nominal);
+  const vision::FrameHistory::Step step =
+      priv.history.next(time, nominal, GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT));
+  frame.running_time = clock_time(step.time);
   frame.fresh = step.fresh || camera.link == Link::cut || camera.link == Link::lost;
   frame.number = ++priv.number;
   frame.read_pose();

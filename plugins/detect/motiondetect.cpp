@@ -13,8 +13,10 @@
  * Timestamps may be missing: the frames are taken as evenly spaced then. Timestamps may step back a little: such a
  * frame is taken to follow the one before it at the usual distance, and the third of them brings a warning, once a
  * stream. A step by more than three times that distance, and more than a quarter of a second, begins a new scene,
- * whether it is backwards or forwards. A buffer without its picture is passed on with the flag CORRUPTED and one
- * warning, and ends no scene unless more than five come in a row.
+ * whether it is backwards or forwards. By more than 10 s forwards or one backwards, without the flag DISCONT, it is taken
+ * for a wrong timestamp: one or two such frames in a row follow at the usual distance, the third begins a new scene.
+ * Once a smaller step has proved to be a wrong timestamp, later ones are judged in the same way. A buffer without its
+ * picture is passed on with the flag CORRUPTED and one warning, and ends no scene unless more than five come in a row.
  *
  * A buffer with the flag GAP repeats the last picture, as duplicates of `videorate` do, and carries its result on: see
  * `motiontrack`. Elements in between may take the flag off (`videoscale` of GStreamer 1.22): a frame whose analysed

@@ -81,6 +81,7 @@
 #include "shared/complaint.hpp"
 #include "shared/properties.hpp"
 #include "shared/video.hpp"
+#include "vision/frame_history.h"
 #include "vision/image/luma_stretch.h"
 #include "vision/verification/look_worker.h"
 #include "vision/verification/person_verifier.h"
@@ -171,6 +172,7 @@ struct State {  // streaming thread only
   vision::LookWorker worker;
   std::optional<Pending> pending;
   std::optional<bool> live;
+  vision::FrameHistory history{vision::FrameHistory::Parameters{.gap_seconds = kLongestGap}};
   GstClockTime last = GST_CLOCK_TIME_NONE, next_look = GST_CLOCK_TIME_NONE;
   std::vector<vision::Candidate> candidates, candidates_before;  // of this frame, of the one before
   std::vector<CerberusRegion> before, after;  // regions of the frame, and what is published
@@ -194,6 +196,12 @@ void forget(State& state) {
   state.verifier.reset();
   state.stretch.reset();
   state.last = state.next_look = GST_CLOCK_TIME_NONE;
+}
+
+// The next frame follows no other.
+void begin_anew(State& state) {
+  state.history.drop();
+  forget(state);
 }
 
 gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
@@ -221,7 +229,7 @@ gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
       return FALSE;
     }
     state.worker.start(std::move(detector));
-    forget(state);
+    begin_anew(state);
     return TRUE;
   });
 }
@@ -243,7 +251,7 @@ gboolean cerberus_person_verify_set_caps(GstBaseTransform* transform, GstCaps* i
     if (state.caps.is_new(wrong))
       CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, (wrong), ("caps %" GST_PTR_FORMAT, in));
     if (!known) return FALSE;
-    forget(state);
+    begin_anew(state);
     state.reduced = vision::analysis_size(
         {GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)}, kFollowedWidth);
     state.picture.resize(state.reduced);
@@ -253,7 +261,7 @@ gboolean cerberus_person_verify_set_caps(GstBaseTransform* transform, GstCaps* i
 
 gboolean cerberus_person_verify_sink_event(GstBaseTransform* transform, GstEvent* event) {
   if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP)
-    cerberus::guarded(transform, [&] { forget(cerberus_person_verify_self(transform)->priv->state); });
+    cerberus::guarded(transform, [&] { begin_anew(cerberus_person_verify_self(transform)->priv->state); });
   return GST_BASE_TRANSFORM_CLASS(cerberus_person_verify_parent_class())->sink_event(transform, event);
 }
 
@@ -374,14 +382,15 @@ GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, G
       CERBERUS_ELEMENT_WARNING(transform, STREAM, FAILED, (wrong), ("%" GST_PTR_FORMAT, buffer));
     if (!frame) return GST_FLOW_OK;
 
-    GstClockTime now = cerberus::plugin::running_time_of(transform->segment, buffer);
-    if (!GST_CLOCK_TIME_IS_VALID(now))
-      now = GST_CLOCK_TIME_IS_VALID(state.last) ? state.last + cerberus::plugin::clock_time(kUsualStep) : 0;
-    double seconds = kUsualStep;
-    if (GST_CLOCK_TIME_IS_VALID(state.last)) {
-      seconds = static_cast<double>(GST_CLOCK_DIFF(state.last, now)) / GST_SECOND;
-      if (seconds <= 0 || seconds > kLongestGap) forget(state), seconds = kUsualStep;
-    }
+    const GstClockTime stamp = cerberus::plugin::running_time_of(transform->segment, buffer);
+    const vision::FrameHistory::Step step =
+        state.history.next(cerberus::plugin::known_time(stamp), kUsualStep);
+    if (step.fresh) forget(state);
+    const double seconds = step.seconds > 0 ? step.seconds : kUsualStep;
+    GstClockTime now = cerberus::plugin::clock_time(step.time);
+    const bool known = GST_CLOCK_TIME_IS_VALID(now), before = GST_CLOCK_TIME_IS_VALID(state.last);
+    if (before && (!known || now <= state.last)) now = state.last + cerberus::plugin::clock_time(seconds);
+    if (!before && !known) now = 0;
     state.last = now;
 
     const vision::Size size{GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)};

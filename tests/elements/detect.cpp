@@ -91,7 +91,7 @@ GstBuffer* faint(const char* format, const World& world, int k, double offset) {
 
 }  // namespace
 
-// A thermal camera of 16 bits uses a few percent of them; its shutter closes, and all values are others.
+// A thermal camera uses a few percent of 16 bits. After its shutter has closed, all values are shifted (of 16 bits: 131).
 GST_START_TEST(somebody_in_a_few_percent_of_a_deep_formats_range_is_found) {
   static const char* const formats[] = {"GRAY16_LE", "GRAY16_BE", "P010_10LE", "I420_10LE", "Y444_12BE"};
   const char* format = formats[__i__];
@@ -114,6 +114,27 @@ GST_START_TEST(somebody_in_a_few_percent_of_a_deep_formats_range_is_found) {
   fail_unless(found >= 76, "%s: found in %d of 80 frames", format, found);
   fail_unless(identities.size() == 1 && others <= 2, "%s: %d identities, %d others", format,
               static_cast<int>(identities.size()), others);
+}
+GST_END_TEST
+
+GST_START_TEST(a_frame_in_twenty_that_is_stamped_hours_off_renews_no_identity) {
+  const World world = entering();
+  static const GstClockTimeDiff offs[] = {3 * 3600 * GST_SECOND, -2 * GST_SECOND};
+  Line line("motiondetect");
+  std::set<guint> identities;
+  int found = 0;
+  for (int k = 0; k < 100; ++k) {
+    GstBuffer* in = scene::grey_buffer(world, k);
+    GST_BUFFER_PTS(in) +=
+        10 * GST_SECOND + (k % 20 == 19 || (__i__ > 1 && k % 20 == 18) ? offs[__i__ % 2] : 0);
+    GstBuffer* out = line.through(in);
+    const Regions regions(out);
+    for (guint i = 0; i < regions.size(); ++i) identities.insert(regions[i].id);
+    found += k >= 20 && regions.size() > 0;
+    gst_buffer_unref(out);
+  }
+  fail_unless(identities.size() == 1, "%d identities", static_cast<int>(identities.size()));
+  fail_unless(found >= 76, "found in %d of 80 frames", found);
 }
 GST_END_TEST
 
@@ -525,6 +546,7 @@ Suite* detect_suite() {
   tcase_add_test(tests, a_turning_camera_is_measured_and_the_figure_found);
   tcase_add_test(tests, the_motion_is_in_frame_pixels_whatever_the_analysis_width);
   tcase_add_loop_test(tests, somebody_in_a_few_percent_of_a_deep_formats_range_is_found, 0, 5);
+  tcase_add_loop_test(tests, a_frame_in_twenty_that_is_stamped_hours_off_renews_no_identity, 0, 4);
   tcase_add_test(tests, model_none_says_that_the_camera_stands);
   tcase_add_loop_test(tests, the_area_changes_while_playing, 0, 2);
   tcase_add_test(tests, the_analysis_width_changes_while_playing);

@@ -353,6 +353,24 @@ GST_START_TEST(a_wrong_model_is_an_error_that_names_it) {
 }
 GST_END_TEST
 
+// Frame 12 of 20 is stamped three hours ahead: a person is a person after it, and looks go on.
+GST_START_TEST(a_single_time_that_is_far_off_forgets_nobody) {
+  Verifier verifier("");
+  for (int n = 0; n < 20; ++n) {
+    GstBuffer* in = scene(n, {140.0 + n});
+    if (n == 12) GST_BUFFER_PTS(in) += 3 * 3600 * GST_SECOND;
+    CerberusRegion track = person_track(7, 140);
+    track.x += n;
+    add(in, track);
+    GstBuffer* out = verifier.through(in);
+    g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(out);
+    const auto* each = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, 0));
+    fail_unless(n < 8 || each->person, "frame %d", n);
+    gst_buffer_unref(out);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(after_a_flush_and_with_other_caps_it_begins_anew) {
   Verifier verifier("");
   regions_after(verifier, 8, {140}, false, {person_track(7, 140)});
@@ -387,6 +405,7 @@ Suite* personverify_suite() {
   tcase_add_test(tests, a_network_whose_boxes_are_multiplied_by_the_size_of_their_cells_runs);
   tcase_add_test(tests, of_several_outputs_of_a_model_the_list_of_boxes_is_read);
   tcase_add_test(tests, a_wrong_model_is_an_error_that_names_it);
+  tcase_add_test(tests, a_single_time_that_is_far_off_forgets_nobody);
   tcase_add_test(tests, after_a_flush_and_with_other_caps_it_begins_anew);
   return suite;
 }

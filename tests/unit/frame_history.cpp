@@ -155,6 +155,77 @@ START_TEST(a_stream_slower_than_its_caps_is_not_blind) {
 }
 END_TEST
 
+// Frame k has the time k * kStep, but one or two of ten frames in a row are stamped far off.
+START_TEST(single_times_that_are_far_off_end_no_scene) {
+  for (const Time off : {Time(3h), Time(-3h), Time(11s), Time(-2s), Time(-48h)})
+    for (const int count : {1, 2}) {
+      FrameHistory history;
+      for (int k = 100; k < 200; ++k) {
+        const bool far = k % 10 >= 10 - count;
+        const Time time = k * kStep + (far ? off + (k % 3) * 100ms : 0ms);
+        const FrameHistory::Step step = history.next(time, kNominal);
+        ck_assert_msg(step.fresh == (k == 100), "frame %d", k);
+        if (k == 100) continue;
+        ck_assert_msg(std::abs(step.seconds - kNominal) < 1e-9, "frame %d: %f s", k, step.seconds);
+        ck_assert(step.time == k * kStep && step.previous == (k - 1) * kStep);
+        ck_assert_int_eq(step.backwards, far && off < 0s);
+      }
+    }
+}
+END_TEST
+
+// Likewise of frames that repeat a picture, of lost ones, and where the caps name no rate.
+START_TEST(times_far_off_count_as_usual_around_repeated_and_lost_frames) {
+  FrameHistory history;
+  for (int k = 100; k < 110; ++k) history.next(k * kStep, 0);
+  ck_assert(std::abs(*history.repeat(5h, 0) - .04) < 1e-9);
+  ck_assert(std::abs(*history.repeat(111 * kStep, 0) - .08) < 1e-9);
+  FrameHistory::Step step = history.next(0s, 0);
+  ck_assert(!step.fresh && std::abs(step.seconds - .12) < 1e-9 && step.time == 112 * kStep);
+  history.lose();
+  step = history.next(5h, 0);
+  ck_assert(!step.fresh && std::abs(step.seconds - .08) < 1e-9 && step.time == 114 * kStep);
+  step = history.next(115 * kStep, 0);
+  ck_assert(!step.fresh && std::abs(step.seconds - .04) < 1e-9);
+}
+END_TEST
+
+// Five seconds ahead may be a gap, half a second back a step of the clock: the first ends the scene, and is seen to be wrong.
+START_TEST(a_gap_that_was_none_makes_all_others_doubtful) {
+  for (const Time off : {Time(5s), Time(-500ms)})
+    for (const int count : {1, 2}) {
+      FrameHistory history;
+      int fresh = 0;
+      for (int k = 100; k < 300; ++k) {
+        const bool far = k % 10 >= 10 - count;
+        const FrameHistory::Step step = history.next(k * kStep + (far ? off : 0s), kNominal);
+        fresh += step.fresh;
+        if (k < 111) continue;
+        ck_assert_msg(!step.fresh && std::abs(step.seconds - kNominal) < 1e-9, "frame %d: %f s", k,
+                      step.seconds);
+      }
+      ck_assert_int_eq(fresh, 2);
+    }
+}
+END_TEST
+
+// A clock that is set: the third frame is believed. Where the source marks the jump, the first is.
+START_TEST(times_that_stay_far_off_begin_a_scene) {
+  for (const Time off : {Time(3h), Time(-3h)}) {
+    FrameHistory history, marked;
+    int k = 0;
+    for (; k < 10; ++k) history.next(100s + k * kStep, kNominal), marked.next(100s + k * kStep, kNominal);
+    for (const int last = k + 20; k < last; ++k) {
+      const Time time = 100s + off + k * kStep;
+      const FrameHistory::Step step = history.next(time, kNominal);
+      ck_assert_int_eq(step.fresh, k == 12);
+      ck_assert(k < 12 || step.time == time);
+      ck_assert_int_eq(marked.next(time, kNominal, k == 10).fresh, k == 10);
+    }
+  }
+}
+END_TEST
+
 START_TEST(missing_timestamps_are_taken_as_evenly_spaced) {
   FrameHistory history;
   ck_assert(history.next(std::nullopt, kNominal).fresh);
@@ -348,6 +419,10 @@ int main() {
                         lost_pictures_are_passed_over_unless_they_are_many,
                         a_gap_is_judged_by_the_rhythm_of_the_stream,
                         a_stream_slower_than_its_caps_is_not_blind,
+                        single_times_that_are_far_off_end_no_scene,
+                        times_far_off_count_as_usual_around_repeated_and_lost_frames,
+                        times_that_stay_far_off_begin_a_scene,
+                        a_gap_that_was_none_makes_all_others_doubtful,
                         missing_timestamps_are_taken_as_evenly_spaced,
                         missing_frames_are_told_from_a_mark_alone,
                         a_repeated_frame_counts_from_the_last_picture,
