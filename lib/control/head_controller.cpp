@@ -242,6 +242,8 @@ void HeadController::watch_emergency(Time head, DeferredNotifications& out) {
 void HeadController::report_fault(const std::string& failure, Time head, DeferredNotifications& out) {
   if (failure.empty()) return;
   const bool known = std::exchange(faulty_, true);
+  // What the head did not obey is not obeyed later: it may look elsewhere by then.
+  if (!known) manual_.expire("the manual command ended: the head was at fault");
   report(HeadState::fault, failure, head, out);
   if (!known) out.add(Fault{failure});
 }

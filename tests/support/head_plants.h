@@ -285,6 +285,8 @@ struct ViscaPlant final : HeadPlant {
   double tilt() const override { return camera.tilt(); }
   double precision() const override { return 1.5; }
   std::size_t actions() const override { return static_cast<std::size_t>(camera.moves()); }
+  void unplug() override { camera.set_power(false); }
+  void plug() override { camera.set_power(true); }
   bool powered() const override { return camera.speed() != 0; }
 };
 
@@ -301,6 +303,8 @@ struct InvertedPlant final : HeadPlant {
   double precision() const override { return plant.precision(); }
   std::size_t actions() const override { return plant.actions(); }
   bool powered() const override { return plant.powered(); }
+  void unplug() override { plant.unplug(); }
+  void plug() override { plant.plug(); }
 };
 
 }  // namespace cerberus::tests

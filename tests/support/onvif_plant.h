@@ -28,6 +28,10 @@ class SteppedHttp final : public drivers::onvif::HttpClient {
   ~SteppedHttp() override { ::close(fd_); }
   void post(const drivers::onvif::HttpRequest& request) override {
     if (request.body.find("ContinuousMove") != std::string::npos) logged_in_ = true;
+    if (gone_) {
+      answers_.push_back({time_.now() + answer_time_, {request.id, 0, "", "Connection refused"}});
+      return;
+    }
     const auto path = request.url.find('/', request.url.find("//") + 2);
     const HttpReply reply =
         camera_.answer({path == std::string::npos ? "/" : request.url.substr(path), "", request.body});
@@ -48,6 +52,7 @@ class SteppedHttp final : public drivers::onvif::HttpClient {
     answers_.pop_front();
     return answer;
   }
+  void set_gone(bool gone) { gone_ = gone; }
   int fd() const override { return fd_; }
   const std::string& user() const override { return user_; }
   std::optional<drivers::onvif::UsernameToken> token(const std::string&, bool) override {
@@ -63,7 +68,7 @@ class SteppedHttp final : public drivers::onvif::HttpClient {
   OnvifCamera& camera_;
   const SteppedTime& time_;
   std::chrono::milliseconds answer_time_;
-  bool logged_in_ = false;
+  bool logged_in_ = false, gone_ = false;
   std::deque<Late> answers_;
   std::string user_;
   int fd_ = ::eventfd(1, EFD_CLOEXEC | EFD_NONBLOCK);  // always readable
@@ -72,6 +77,7 @@ class SteppedHttp final : public drivers::onvif::HttpClient {
 struct OnvifPlant final : HeadPlant {
   SteppedTime time;
   mutable OnvifCamera camera;
+  SteppedHttp* http;  // of the head
   std::optional<drivers::OnvifHead> head;
   // A camera without positions.
   explicit OnvifPlant(std::chrono::milliseconds dead_time = {})
@@ -88,7 +94,9 @@ struct OnvifPlant final : HeadPlant {
     options.mechanics.full_speed = {OnvifCamera::kPanSpeed, OnvifCamera::kTiltSpeed};
     options.absolute = false;
     if (adjust) adjust(options);
-    head.emplace(std::make_unique<SteppedHttp>(camera, time, answer_time), options);
+    auto made = std::make_unique<SteppedHttp>(camera, time, answer_time);
+    http = made.get();
+    head.emplace(std::move(made), options);
   }
   drivers::HeadDevice& device() override { return *head; }
   void elapse(Time now) override { time.set(now); }
@@ -99,6 +107,8 @@ struct OnvifPlant final : HeadPlant {
     return static_cast<std::size_t>(camera.count("ContinuousMove") + camera.count("Stop"));
   }
   bool powered() const override { return camera.speed() != 0; }
+  void unplug() override { http->set_gone(true); }
+  void plug() override { http->set_gone(false); }
 };
 
 }  // namespace cerberus::tests

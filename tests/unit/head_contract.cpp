@@ -297,6 +297,36 @@ START_TEST(a_silent_pipeline_stops_the_head_within_half_a_second_more) {
 }
 END_TEST
 
+// With a position, a speed, and one given while the camera is away. A Pelco-D head that answers nothing is never known to
+// be away.
+START_TEST(after_an_outage_a_head_stands_until_the_next_command) {
+  if (std::string(kDrivers[_i].name).starts_with("pelco-d")) return;
+  const AxisCommand orders[] = {{Kind::position, radians(150), radians(40)},
+                                {Kind::velocity, radians(40), 0},
+                                {Kind::position, radians(-150), radians(40)}};
+  for (const AxisCommand& order : orders) {
+    Opened opened(_i);
+    HeadPlant& plant = opened.stepped->plant();
+    opened.command(100ms, order);
+    opened.stepped->advance(1s);
+    ck_assert_double_gt(std::abs(plant.pan()), 5);
+    plant.unplug();
+    opened.stepped->advance(2s);
+    const std::string fault = opened.head->command({2s, order, {}});  // refused, and not kept
+    ck_assert_msg(!fault.empty(), "%s", kDrivers[_i].name);
+    opened.stepped->advance(5s);  // a camera that had its power has ended its move by then
+    const double there = plant.pan();
+    plant.plug();
+    opened.stepped->advance(15s);
+    ck_assert_msg(std::abs(plant.pan() - there) <= kDrivers[_i].precision,
+                  "%s goes on, from %.1f to %.1f degrees", kDrivers[_i].name, there, plant.pan());
+    opened.command(15s, {Kind::position, 0, radians(40)});
+    opened.stepped->advance(25s);
+    ck_assert_double_gt(std::abs(plant.pan() - there), 10);  // and obeys that
+  }
+}
+END_TEST
+
 START_TEST(a_stale_command_is_refused_and_changes_nothing) {
   Opened head(_i);
   head.command(2s, {Kind::position, 1, 1});
@@ -363,7 +393,8 @@ int main() {
     tcase_add_loop_test(cases, test, 0, std::size(kDrivers));
   for (const TTest* test :
        {a_move_of_90_degrees_arrives_at_the_head_itself, the_hardware_gets_a_command_within_five_milliseconds,
-        a_silent_pipeline_stops_the_head_within_half_a_second_more})
+        a_silent_pipeline_stops_the_head_within_half_a_second_more,
+        after_an_outage_a_head_stands_until_the_next_command})
     tcase_add_loop_test(cases, test, kFirstEmulated, std::size(kDrivers));
   tcase_add_test(cases, drivers_are_known_by_their_names);
   suite_add_tcase(suite, cases);

@@ -851,15 +851,20 @@ START_TEST(the_emergency_stop_takes_the_head_from_everybody_until_a_new_order) {
 }
 END_TEST
 
-START_TEST(after_a_fault_a_manual_command_is_reported_again) {
+START_TEST(a_manual_command_ends_with_a_fault) {
   Rig rig;
   rig.controller.move(radians(30), 0, false, {}, rig.out);
   rig.record->failure = "no power";
   rig.controller.frame(Rig::with(0s, Action::hold), rig.out);
   rig.assert_status(HeadState::fault, "no power");
   rig.record->failure.clear();
-  rig.process(Rig::with(40ms, Action::hold));
+  rig.process(Rig::with(40ms, Action::turn_left));
+  rig.assert_status(HeadState::manual, "the manual command ended: the head was at fault");
+  ck_assert(rig.command().stop && holds(rig.command().pan));  // neither that command nor a decision moves it
+  rig.controller.move(radians(20), 0, false, {}, rig.out);
+  rig.process(Rig::with(80ms, Action::hold));
   rig.assert_status(HeadState::manual, "manual command: move");
+  ck_assert_double_eq_tol(degrees(rig.command().pan.value), 20, 1e-9);
 }
 END_TEST
 
@@ -929,7 +934,7 @@ int main() {
                            moves_expire_only_with_a_manual_timeout,
                            a_turn_ends_after_500_ms_whatever_the_manual_timeout,
                            the_emergency_stop_takes_the_head_from_everybody_until_a_new_order,
-                           after_a_fault_a_manual_command_is_reported_again,
+                           a_manual_command_ends_with_a_fault,
                            a_head_that_cannot_be_opened_is_an_error_and_reported_once,
                            an_interrupted_frame_is_passed_again});
 }

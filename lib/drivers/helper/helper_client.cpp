@@ -90,6 +90,15 @@ void HelperClient::send_command(Time now) {
   last_move_ = line;
 }
 
+// What was commanded is over: the head stands until the next command.
+void HelperClient::stand(Time now) {
+  model_.place(now, {}, true);
+  last_.pan = last_.tilt = {};
+  follows_ = false;
+  homing_.reset();
+  last_move_.clear();
+}
+
 // The protocol's stop, which ends homing, too.
 void HelperClient::send_stop() {
   follows_ = false;
@@ -161,10 +170,12 @@ void HelperClient::take(const HelperLine& line, Time now) {
   } else if (const auto* reported = std::get_if<FaultLine>(&line)) {
     const bool first = fault_.empty();
     fault_ = reported->text;
-    if (first) send_("stop\n");
+    if (!first) return;
+    stand(now);
+    send_("stop\n");
   } else if (std::get_if<RecoveredLine>(&line)) {
     fault_.clear();
-    last_move_.clear();
+    stand(now);
   } else if (const auto* emergency = std::get_if<EmergencyLine>(&line)) {
     pressed_ = emergency->pressed;
     was_pressed_ = was_pressed_ || pressed_;
@@ -201,9 +212,12 @@ void HelperClient::take(const HelperLine& line, Time now) {
   }
 }
 
+// A head that is at fault obeys nothing, neither now nor when it works again.
 std::string HelperClient::accept(const HeadCommand& command) {
-  if (std::string wrong = model_.command(command); !wrong.empty()) return wrong;
-  last_ = command;
+  HeadCommand obeyed = command;
+  if (!loss_.empty() || !why_idle().empty()) obeyed.pan = obeyed.tilt = {};
+  if (std::string wrong = model_.command(obeyed); !wrong.empty()) return wrong;
+  last_ = obeyed;
   if (std::exchange(homing_, std::nullopt)) last_move_.clear();
   return {};
 }
@@ -258,6 +272,7 @@ std::string HelperClient::limit(Time now, const motion::Limits& limits) {
 
 std::string HelperClient::home(Time now) {
   if (!ready_ || !abilities_.home) return "the head has no way to find its reference";
+  if (!fault_.empty()) return fault_;
   const AxisCommand zero{Kind::position, 0, setup_.limits.pan.speed};
   if (std::string wrong = model_.command({now, zero, zero}); !wrong.empty()) return wrong;
   follows_ = false;

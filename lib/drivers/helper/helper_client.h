@@ -62,6 +62,7 @@ class HelperClient {
   std::string why_idle() const;  // why no command is sent; empty: they are
   void send_command(Time now);
   void send_stop();
+  void stand(Time now);
   void follow(Time now);
   void check_homing(Time now);
   double field_of_view() const;  // as in motion::Pose
