@@ -95,7 +95,8 @@ const Route* find_route(std::string_view method, std::string_view path) {
   for (const Route& route : kRoutes) {
     const bool all = route.path.ends_with('*');
     const std::string_view stem = route.path.substr(0, route.path.size() - (all ? 1 : 0));
-    if (method == route.method && (all ? path.starts_with(stem) : path == stem)) return &route;
+    const bool asked = method == route.method || (method == "HEAD" && route.method == "GET");
+    if (asked && (all ? path.starts_with(stem) : path == stem)) return &route;
   }
   return nullptr;
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <set>
 #include <span>
@@ -33,6 +34,7 @@ struct Route {
   Role role;                      // that is needed
 };
 std::span<const Route> routes();
+// HEAD is answered where GET is, without the body.
 const Route* find_route(std::string_view method, std::string_view path);
 
 // Whether a request's Host names this machine: a numeric address, localhost, the machine's own name (also with
@@ -53,6 +55,7 @@ struct Session {
   std::string address;
   AccessTime begun{}, used{};
   std::set<std::string> played{};  // recordings of which the access log has a line
+  std::string device{};            // of a device: the hash of its token (devices.h)
 };
 
 class Sessions {
@@ -70,6 +73,8 @@ class Sessions {
   void end(std::string token);
   // Ends all sessions of a role, after its password changed.
   void end_all(Role role, std::string_view except);
+  // Ends those of which `over` says so.
+  void end_if(const std::function<bool(const Session&)>& over) { std::erase_if(sessions_, over); }
   std::size_t count() const { return sessions_.size(); }
 
  private:

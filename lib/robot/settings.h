@@ -92,7 +92,8 @@ struct PageSettings {
   bool enabled = true;
   std::string listen = "127.0.0.1";
   int port = 8080;
-  std::vector<std::string> origins;  // that may open the page's WebSocket beside the page's own
+  std::vector<std::string> origins;          // that may open the page's WebSocket beside the page's own
+  std::vector<std::string> trusted_proxies;  // addresses and networks: client_address.h
   // Pixels at most. measured: a viewer of a 1280x720 camera at 25 frames a second takes 4 % of a core with 640, 7.5 with 800,
   // 9 with 1280; halves are scaled fast. Guard: benchmark page.
   int picture_width = 640;

@@ -117,6 +117,12 @@ bool TableReader::texts(const char* key, std::vector<std::string>& value) {
   return true;
 }
 
+bool TableReader::text_or_texts(const char* key, std::vector<std::string>& value) {
+  const TomlValue* node = table_.find(key);
+  if (node == nullptr || !node->is(Kind::text)) return texts(key, value);
+  return text(key, value.emplace_back());
+}
+
 const TomlValue* TableReader::table(const char* key) {
   const TomlValue* node = take(key);
   if (node == nullptr || node->is(Kind::table)) return node;

@@ -40,6 +40,7 @@ class TableReader {
   // Sets `index` to the place of the text in `choices`.
   bool choice(const char* key, std::size_t& index, std::span<const std::string_view> choices);
   bool texts(const char* key, std::vector<std::string>& value);
+  bool text_or_texts(const char* key, std::vector<std::string>& value);
   const text::TomlValue* table(const char* key);
   // The tables of a list; `example` says how they are written.
   std::vector<const text::TomlValue*> tables(const char* key, const char* example);

@@ -54,6 +54,10 @@ int main(int argc, char** argv) {
     heads::only_check();
   }
   const std::string driver = argc > 1 ? argv[1] : "";
+  if (driver == "--version") {
+    std::printf("cerberus-head %s\n", CERBERUS_VERSION);
+    return 0;
+  }
   if (driver == "--help" || driver == "-h") return help();
   const heads::Run run = heads::find_driver(driver);
   if (!run) return heads::fail("there is no head driver \"" + driver + "\": take " + kDrivers);

@@ -126,7 +126,7 @@ int main(int argc, char** argv) {
   g_autofree gchar *device = nullptr, *words = nullptr, *command = nullptr, *limits = nullptr,
                    *source = nullptr, *output = nullptr;
   gdouble pan = 0, tilt = 0, seconds = 1, fov = 0;
-  gboolean yes = FALSE;
+  gboolean yes = FALSE, version = FALSE;
   const GOptionEntry entries[] = {
       {"device", 0, 0, G_OPTION_ARG_STRING, &device, "As of pantiltsink", "DEVICE"},
       {"device-options", 0, 0, G_OPTION_ARG_STRING, &words, "As of pantiltsink", "WORDS"},
@@ -141,6 +141,7 @@ int main(int argc, char** argv) {
       {"horizontal-fov", 0, 0, G_OPTION_ARG_DOUBLE, &fov, "Degrees that the camera sees over its width", "N"},
       {"output", 'o', 0, G_OPTION_ARG_STRING, &output, "The calibration's file (head.calibration)", "FILE"},
       {"yes", 'y', 0, G_OPTION_ARG_NONE, &yes, "Move without asking", nullptr},
+      {"version", 0, 0, G_OPTION_ARG_NONE, &version, "Print the version", nullptr},
       {nullptr, 0, 0, G_OPTION_ARG_NONE, nullptr, nullptr, nullptr}};
   g_autoptr(GOptionContext) context = g_option_context_new("COMMAND");
   g_option_context_set_summary(context, kSummary);
@@ -148,6 +149,10 @@ int main(int argc, char** argv) {
   g_option_context_add_group(context, gst_init_get_option_group());
   g_autoptr(GError) error = nullptr;
   if (!g_option_context_parse(context, &argc, &argv, &error)) return usage(error->message);
+  if (version) {
+    std::printf("cerberus-heads %s\n", CERBERUS_VERSION);
+    return 0;
+  }
   if (argc < 2) return usage("say list, move or calibrate");
   const std::string what = argv[1];
   if (what == "list") return cerberus::heads::list_heads({argv + 2, argv + argc});

@@ -139,7 +139,11 @@ void Camera::on_report(const GstStructure* report) {
   }
   const gchar* state = gst_structure_get_string(report, "state");
   if (state == nullptr) return;
-  if (gst_structure_has_name(report, "cerberus-pantilt")) head_state_ = state;
+  if (gst_structure_has_name(report, "cerberus-pantilt")) {
+    const gchar* reason = gst_structure_get_string(report, "reason");
+    head_state_ = state;
+    head_reason_ = reason ? reason : "";
+  }
   if (gst_structure_has_name(report, "cerberus-recording")) {
     gboolean last = FALSE;
     gst_structure_get_boolean(report, "last", &last);
@@ -299,6 +303,7 @@ void Camera::closed() {
   g_clear_pointer(&pipeline_, gst_object_unref);
   rate_ = 0;
   head_state_.clear();
+  head_reason_.clear();
   if (again_ && wanted_) {
     start();
   } else if (wanted_) {

@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "robot/backoff.h"
@@ -86,6 +87,10 @@ class Camera {
   // What the head does (`state` of cerberus-pantilt), and whether an event is being recorded.
   const std::string& head_state() const { return head_state_; }
   bool is_recording() const { return recording_ && recording_fault_.empty(); }
+  // The head stands because of an order to stop, or of its emergency stop.
+  bool is_stopped_by_hand() const {
+    return head_state_ == "stopped" || (head_state_ == "manual" && head_reason_.ends_with(": stop"));
+  }
 
   void set_on_publish(OnPublish on_publish) { on_publish_ = std::move(on_publish); }
   // Publishes the newest recording by MQTT, or that there is none.
@@ -112,6 +117,8 @@ class Camera {
   const std::string& stage() const { return stage_; }
   // Sets a property while the camera runs; false: it does not, or has no such part.
   bool set_live(const char* element, const char* property, double value);
+  // The value in force of a number; nullopt: the camera does not run, or has no such part.
+  std::optional<double> live(const char* element, const char* property) const;
   // Milliseconds from a frame's capture until it is analysed.
   double latency() const { return static_cast<double>(latency_) / 1e6; }
 
@@ -156,7 +163,7 @@ class Camera {
   Clock::time_point since_{}, last_frame_{}, last_tick_{};
   Parts parts_;
   Backoff camera_backoff_, head_backoff_, recorder_backoff_;
-  std::string fault_, head_state_;
+  std::string fault_, head_state_, head_reason_;
   bool recording_ = false;
   std::string recording_fault_;      // of the recorder that runs, or why there is none
   std::string published_recording_;  // the last payload of the topic `recording`

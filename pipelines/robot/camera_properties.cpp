@@ -127,6 +127,19 @@ bool Camera::set_live(const char* name, const char* property, double value) {
   return gst_value_compare(&wanted, &is) == GST_VALUE_EQUAL;
 }
 
+std::optional<double> Camera::live(const char* name, const char* property) const {
+  if (pipeline_ == nullptr || state_ != State::running) return std::nullopt;
+  g_autoptr(GstElement) found = element(name);
+  GParamSpec* spec = found ? g_object_class_find_property(G_OBJECT_GET_CLASS(found), property) : nullptr;
+  if (spec == nullptr) return std::nullopt;
+  g_auto(GValue) is = G_VALUE_INIT, number = G_VALUE_INIT;
+  g_value_init(&is, G_PARAM_SPEC_VALUE_TYPE(spec));
+  g_value_init(&number, G_TYPE_DOUBLE);
+  g_object_get_property(G_OBJECT(found), property, &is);
+  if (!g_value_transform(&is, &number)) return std::nullopt;
+  return g_value_get_double(&number);
+}
+
 bool Camera::turn(double pan_speed, double tilt_speed) {
   gboolean done = FALSE;
   if (head_ != nullptr && state_ == State::running)

@@ -6,6 +6,9 @@
 #include <filesystem>
 #include <string>
 
+#if HAVE_PAGE
+#include "device_tokens.h"
+#endif
 #include "robot.h"
 #include "robot/settings_file.h"
 #include "settings_trial.h"
@@ -30,18 +33,50 @@ void find_elements() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  gboolean check = FALSE;
-  const GOptionEntry options[] = {{"check", 0, 0, G_OPTION_ARG_NONE, &check,
-                                   "Explain every mistake of FILE with its line, and run nothing", nullptr},
-                                  {nullptr, 0, 0, G_OPTION_ARG_NONE, nullptr, nullptr, nullptr}};
+  gboolean check = FALSE, version = FALSE, make_device = FALSE, list_devices = FALSE;
+  g_autofree gchar *device = nullptr, *role = nullptr, *revoke = nullptr;
+  const GOptionEntry options[] = {
+      {"check", 0, 0, G_OPTION_ARG_NONE, &check,
+       "Explain every mistake of FILE with its line, and run nothing", nullptr},
+      {"version", 0, 0, G_OPTION_ARG_NONE, &version, "Print the version", nullptr},
+      {"make-device-token", 0, 0, G_OPTION_ARG_NONE, &make_device,
+       "Make a token by which a device sees the page of FILE without a password, and print it once", nullptr},
+      {"device", 0, 0, G_OPTION_ARG_STRING, &device, "Name of that device (kiosk)", "NAME"},
+      {"role", 0, 0, G_OPTION_ARG_STRING, &role, "Its role: viewer or operator (viewer)", "ROLE"},
+      {"revoke-device", 0, 0, G_OPTION_ARG_STRING, &revoke, "Let a device in no more, from now on", "NAME"},
+      {"list-devices", 0, 0, G_OPTION_ARG_NONE, &list_devices, "Print the devices and their roles", nullptr},
+      {nullptr, 0, 0, G_OPTION_ARG_NONE, nullptr, nullptr, nullptr}};
   g_autoptr(GOptionContext) context = g_option_context_new("FILE");
   g_option_context_set_summary(context, "Runs the robot that FILE describes (docs/manual/robot.md).");
   g_option_context_add_main_entries(context, options, nullptr);
   g_option_context_add_group(context, gst_init_get_option_group());
   g_autoptr(GError) error = nullptr;
-  if (!g_option_context_parse(context, &argc, &argv, &error) || argc != 2) {
+  const bool parsed = g_option_context_parse(context, &argc, &argv, &error);
+  if (parsed && version) {
+    std::printf("cerberusd %s\n", CERBERUS_VERSION);
+    return 0;
+  }
+  if (!parsed || argc != 2) {
     std::fprintf(stderr, "cerberusd: %s\n", error ? error->message : "which FILE? (cerberusd --help)");
     return 2;
+  }
+  if (make_device || revoke || list_devices) {
+    const gchar* credentials = g_getenv("CREDENTIALS_DIRECTORY");
+    const auto file = cerberus::robot::load_settings(argv[1], credentials ? credentials : "");
+    if (!file.settings) {
+      std::fprintf(stderr, "%s\n", file.errors.c_str());
+      return kWrongConfiguration;
+    }
+#if HAVE_PAGE
+    if (make_device)
+      return cerberus::robot::make_device_token(*file.settings, device ? device : "kiosk",
+                                                role ? role : "viewer");
+    return revoke ? cerberus::robot::revoke_device(*file.settings, revoke)
+                  : cerberus::robot::list_devices(*file.settings);
+#else
+    std::fprintf(stderr, "cerberusd: this build has no page (it needs libsoup 3 and libargon2)\n");
+    return 1;
+#endif
   }
   find_elements();
   const auto load = [path = std::string(argv[1])](std::string* lacks) {

@@ -2,6 +2,9 @@
 // How a browser gets and loses its session: passwords are checked in a thread of their own.
 #include <gio/gio.h>
 
+#include <utility>
+
+#include "device_tokens.h"
 #include "page_request.h"
 
 namespace cerberus::robot {
@@ -12,23 +15,19 @@ AccessTime now() {
   return std::chrono::steady_clock::now();
 }
 
-bool is_local(SoupServerMessage* message) {
-  GSocketAddress* address = soup_server_message_get_remote_address(message);
-  return G_IS_INET_SOCKET_ADDRESS(address) &&
-         g_inet_address_get_is_loopback(g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(address)));
-}
-
 }  // namespace
 
-void PageServer::set_cookie(SoupServerMessage* message, const std::string& token, const char* age) const {
+void PageServer::set_cookie(SoupServerMessage* message, const char* name, const std::string& token,
+                            const char* age) const {
   std::string cookie =
-      std::string(kCookie) + '=' + token + "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + age;
+      std::string(name) + '=' + token + "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + age;
   if (house_.settings.page.tls) cookie += "; Secure";
   soup_message_headers_append(soup_server_message_get_response_headers(message), "Set-Cookie",
                               cookie.c_str());
 }
 
 void PageServer::log_in(Request& request) {
+  if (const std::string token = request.value("device"); !token.empty()) return log_in_device(request, token);
   const Role role = role_of(request.value("user")).value_or(Role::none);
   const std::chrono::seconds wait = limit_.wait(request.address, name(role), now());
   if (wait.count() > 0) {
@@ -45,7 +44,60 @@ void PageServer::log_in(Request& request) {
   auto right = std::make_shared<bool>(false);
   answer_later(
       request, [right, role, password, all = passwords_] { *right = all.verify(role, password); },
-      [this, right, role](Request& later) { finish_log_in(later, *right ? role : Role::none, false); });
+      [this, right, role](Request& later) {
+        if (!*right)
+          log_access(later.address, role == Role::none
+                                        ? "gave a password for a role that does not exist"
+                                        : "gave a wrong password for the role " + std::string(name(role)));
+        finish_log_in(later, *right ? role : Role::none, false);
+      });
+}
+
+const Device* PageServer::device_of(const std::string& token) {
+  std::string error;
+  if (!load_devices(house_.settings.state_folder, devices_, error))
+    g_printerr("cerberusd: page: %s\n", error.c_str());
+  return devices_.find(hash_of_token(token));
+}
+
+// Its token has so many random bits that no number of guesses finds one.
+void PageServer::log_in_device(Request& request, const std::string& token) {
+  const Device* device = device_of(token);
+  if (device == nullptr) {
+    log_access(request.address, "gave the token of no device");
+    request.refuse(SOUP_STATUS_FORBIDDEN,
+                   "this device is not known (any more): make it a token on the robot's machine, by "
+                   "cerberusd --make-device-token");
+    return;
+  }
+  if (request.session != nullptr) sessions_.end(request.session->token);
+  begin_device_session(request, *device, token);
+  if (request.session == nullptr)
+    return request.refuse(SOUP_STATUS_INTERNAL_SERVER_ERROR, "the system gives no random numbers");
+  request.done();
+}
+
+// The cookie of the token lasts as long as browsers keep one, from each session on.
+void PageServer::begin_device_session(Request& request, const Device& device, const std::string& token) {
+  const std::string own = random_token();
+  if (own.empty()) return;
+  Session& session = sessions_.begin(own, device.role, request.address, now());
+  session.device = device.hash;
+  request.session = &session;
+  set_cookie(request.message, kCookie, own, "604800");
+  set_cookie(request.message, kDeviceCookie, token, "34560000");
+  log_access(request.who(), "logged in as the device " + device.name);
+}
+
+// A revoked device is shown nothing more.
+void PageServer::end_revoked_devices() {
+  bool read = false;
+  sessions_.end_if([&](const Session& session) {
+    if (session.device.empty()) return false;
+    std::string error;
+    if (!std::exchange(read, true)) load_devices(house_.settings.state_folder, devices_, error);
+    return devices_.find(session.device) == nullptr;
+  });
 }
 
 void PageServer::answer_later(Request& request, std::function<void()> work,
@@ -69,7 +121,6 @@ void PageServer::answer_later(Request& request, std::function<void()> work,
 // `role` none: the password is wrong.
 void PageServer::finish_log_in(Request& request, Role role, bool one_time) {
   if (role == Role::none) {
-    log_access(request.who(), "gave a wrong password");
     request.refuse(SOUP_STATUS_FORBIDDEN, "wrong password");
     return;
   }
@@ -83,7 +134,7 @@ void PageServer::finish_log_in(Request& request, Role role, bool one_time) {
   Session& session = sessions_.begin(token, role, request.address, now());
   session.must_set_password = one_time;
   request.session = &session;
-  set_cookie(request.message, token, "604800");
+  set_cookie(request.message, kCookie, token, "604800");
   log_access(request.who(), "logged in");
   request.done();
 }
@@ -92,7 +143,8 @@ void PageServer::log_out(Request& request) {
   log_access(request.who(), "logged out");
   sessions_.end(request.session->token);
   request.session = nullptr;
-  set_cookie(request.message, "", "0");
+  set_cookie(request.message, kCookie, "", "0");
+  set_cookie(request.message, kDeviceCookie, "", "0");
   close_strangers();
   request.done();
 }

@@ -9,6 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "robot/client_address.h"
+
 namespace cerberus::robot {
 
 namespace {
@@ -24,6 +26,14 @@ std::string without_port(const std::string& name) {
   return name.substr(0, name.rfind(':'));
 }
 
+gint64 in_seconds(guint seconds) {
+  return g_get_monotonic_time() + gint64{seconds} * G_USEC_PER_SEC;
+}
+
+void cut(GObject* connection) {
+  g_socket_shutdown(g_socket_connection_get_socket(G_SOCKET_CONNECTION(connection)), TRUE, TRUE, nullptr);
+}
+
 }  // namespace
 
 PageListener::~PageListener() {
@@ -33,6 +43,7 @@ PageListener::~PageListener() {
     g_signal_handlers_disconnect_by_data(service_, this);
     g_object_unref(service_);
   }
+  if (timer_ != 0) g_source_remove(timer_);
   for (const auto& [connection, name] : open_) g_object_weak_unref(connection, forget, this);
   g_clear_object(&certificate_);
 }
@@ -55,6 +66,13 @@ bool PageListener::open(SoupServer* server, GSocketAddress* address, GTlsCertifi
                    }),
                    this);
   g_socket_service_start(service_);
+  timer_ = g_timeout_add_seconds(
+      1,
+      [](gpointer self) {
+        static_cast<PageListener*>(self)->sweep();
+        return static_cast<gboolean>(G_SOURCE_CONTINUE);
+      },
+      this);
   return true;
 }
 
@@ -65,8 +83,10 @@ void PageListener::accept(GSocketConnection* connection) {
   if (remote == nullptr || local == nullptr || open_.size() >= parameters_.most) return;
   std::string name = name_of(remote);
   const auto of_address = std::ranges::count_if(
-      open_, [&](const auto& one) { return without_port(one.second) == without_port(name); });
-  if (static_cast<std::size_t>(of_address) >= parameters_.most_of_address) return;
+      open_, [&](const auto& one) { return without_port(one.second.name) == without_port(name); });
+  if (static_cast<std::size_t>(of_address) >= parameters_.most_of_address &&
+      !is_in(without_port(name), trusted_))
+    return;
   GSocket* socket = g_socket_connection_get_socket(connection);
   g_socket_set_timeout(socket, parameters_.idle);
   g_socket_set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1, nullptr);
@@ -79,7 +99,7 @@ void PageListener::accept(GSocketConnection* connection) {
     g_tls_connection_set_require_close_notify(G_TLS_CONNECTION(secure), FALSE);
     g_object_unref(std::exchange(stream, secure));
   }
-  open_.emplace(G_OBJECT(connection), std::move(name));
+  open_.emplace(G_OBJECT(connection), Open{std::move(name), in_seconds(parameters_.head)});
   g_object_weak_ref(G_OBJECT(connection), forget, this);
   soup_server_accept_iostream(server_, stream, local, remote, &fault);
 }
@@ -90,9 +110,25 @@ void PageListener::forget(gpointer listener, GObject* connection) {
 
 void PageListener::abort(GSocketAddress* remote) {
   const std::string name = name_of(remote);
-  for (const auto& [connection, its_name] : open_)
-    if (its_name == name)
-      g_socket_shutdown(g_socket_connection_get_socket(G_SOCKET_CONNECTION(connection)), TRUE, TRUE, nullptr);
+  for (const auto& [connection, open] : open_)
+    if (open.name == name) cut(connection);
+}
+
+void PageListener::note(GSocketAddress* remote, Step step) {
+  const std::string name = name_of(remote);
+  for (auto& [connection, open] : open_) {
+    if (open.name != name || open.socket) continue;
+    open.socket = step == Step::became_socket;
+    open.until = step == Step::head_read  ? in_seconds(parameters_.head)
+                 : step == Step::answered ? in_seconds(parameters_.idle)
+                                          : 0;
+  }
+}
+
+void PageListener::sweep() {
+  const gint64 now = g_get_monotonic_time();
+  for (const auto& [connection, open] : open_)
+    if (open.until != 0 && open.until < now) cut(connection);
 }
 
 GTlsCertificate* load_certificate(const std::string& certificate, const std::string& key,

@@ -8,6 +8,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "robot/settings.h"
 
@@ -21,6 +22,9 @@ class PageListener {
     // Longer than browsers keep a connection for the next request makes no difference; pages that are open are pinged
     // every 10 s.
     guint idle = 60;  // seconds
+    // Seconds until the head of the first request is complete, with the handshake of TLS, and until a body is after it:
+    // a slow mobile network needs three. A connection that sends letter by letter is never idle.
+    guint head = 10;
   };
 
   PageListener() = default;
@@ -32,12 +36,19 @@ class PageListener {
   bool open(SoupServer* server, GSocketAddress* address, GTlsCertificate* certificate, std::string& error);
   // Ends a connection at once, whatever was promised on it.
   void abort(GSocketAddress* remote);
+  // How far a request on the connection is. A WebSocket has no limit of time from then on.
+  enum class Step { head_read, body_read, answered, became_socket };
+  void note(GSocketAddress* remote, Step step);
+  // Addresses that may have more connections than others: those of proxies.
+  void trust(std::vector<std::string> networks) { trusted_ = std::move(networks); }
 
  private:
   struct Open {
-    PageListener* listener;
-    std::string name;  // "127.0.0.1:4711"
+    std::string name;  // the remote address and port: "127.0.0.1:4711"
+    gint64 until = 0;  // monotonic time, microseconds; 0: no limit
+    bool socket = false;
   };
+  void sweep();
   void accept(GSocketConnection* connection);
   static void forget(gpointer listener, GObject* connection);  // which is gone
 
@@ -45,7 +56,9 @@ class PageListener {
   SoupServer* server_ = nullptr;
   GSocketService* service_ = nullptr;
   GTlsCertificate* certificate_ = nullptr;
-  std::map<GObject*, std::string> open_;  // the connections by their remote address and port
+  guint timer_ = 0;
+  std::vector<std::string> trusted_;
+  std::map<GObject*, Open> open_;  // by connection
 };
 
 // The certificate of the files, or the self-made one in the state folder, which the openssl tool makes at the first start,

@@ -7,6 +7,10 @@
 namespace cerberus::robot {
 
 constexpr const char* kCookie = "cerberus";
+constexpr const char* kDeviceCookie = "cerberus-device";
+
+// The value of a cookie of the request; empty: there is none.
+std::string cookie_of(SoupServerMessage* message, const char* name);
 
 struct PageServer::Request {
   SoupServerMessage* message;

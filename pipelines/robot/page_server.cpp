@@ -49,13 +49,24 @@ std::string peer_name(SoupServerMessage* message) {
   return text ? text : "?";
 }
 
-bool is_local(SoupServerMessage* message) {
-  GInetAddress* address = peer(message);
-  return address != nullptr && g_inet_address_get_is_loopback(address);
+// Of several headers of a name: all, joined by commas.
+std::string headers(SoupServerMessage* message, const char* name) {
+  const char* value = soup_message_headers_get_list(soup_server_message_get_request_headers(message), name);
+  return value ? value : "";
 }
 
-std::string token_of(SoupServerMessage* message) {
-  const std::string cookies = header(message, "Cookie"), key = std::string(kCookie) + '=';
+bool is_loopback(const std::string& address) {
+  return address.starts_with("127.") || address == "::1";
+}
+
+AccessTime now() {
+  return std::chrono::steady_clock::now();
+}
+
+}  // namespace
+
+std::string cookie_of(SoupServerMessage* message, const char* name) {
+  const std::string cookies = header(message, "Cookie"), key = std::string(name) + '=';
   for (std::size_t at = 0; at < cookies.size();) {
     const std::size_t end = std::min(cookies.find(';', at), cookies.size());
     if (cookies.compare(at, key.size(), key) == 0)
@@ -65,11 +76,17 @@ std::string token_of(SoupServerMessage* message) {
   return {};
 }
 
-AccessTime now() {
-  return std::chrono::steady_clock::now();
+Client PageServer::client(SoupServerMessage* message) const {
+  return client_of(peer_name(message), house_.settings.page.trusted_proxies,
+                   headers(message, "X-Forwarded-For"), headers(message, "Forwarded"));
 }
 
-}  // namespace
+// What an unknown proxy on this machine hands on comes from elsewhere.
+bool PageServer::is_local(SoupServerMessage* message) const {
+  const Client from = client(message);
+  return is_loopback(from.address) &&
+         (!from.proxied || is_in(peer_name(message), house_.settings.page.trusted_proxies));
+}
 
 PageServer::PageServer(House house) : house_(std::move(house)) {}
 
@@ -82,6 +99,7 @@ PageServer::~PageServer() {
   viewers_.clear();
   if (server_ == nullptr) return;
   soup_server_disconnect(server_);
+  g_signal_handlers_disconnect_by_data(server_, this);
   g_object_unref(server_);
 }
 
@@ -92,7 +110,7 @@ bool PageServer::open(std::string& error) {
     error = path_of_passwords() + " cannot be read; without this file a new password is asked for";
     return false;
   }
-  server_ = soup_server_new("server-header", "", nullptr);
+  server_ = soup_server_new(nullptr, nullptr);  // without a header that says which server this is
   // JPEG does not become smaller by it: it would cost more than the encoder.
   soup_server_remove_websocket_extension(server_, SOUP_TYPE_WEBSOCKET_EXTENSION_DEFLATE);
   const auto early = [](SoupServer*, SoupServerMessage* message, const char* path, GHashTable*,
@@ -102,6 +120,7 @@ bool PageServer::open(std::string& error) {
       server_, nullptr,
       [](SoupServer*, SoupServerMessage* message, const char* path, GHashTable* query, gpointer data) {
         auto& page = *static_cast<PageServer*>(data);
+        page.listener_.note(soup_server_message_get_remote_address(message), PageListener::Step::body_read);
         g_autoptr(GHashTable) form = nullptr;
         if (std::string_view(soup_server_message_get_method(message)) == "POST") {
           SoupMessageBody* body = soup_server_message_get_request_body(message);
@@ -111,16 +130,22 @@ bool PageServer::open(std::string& error) {
           form = soup_form_decode(std::string(letters ? letters : "", size).c_str());
           query = form;
         }
-        Request request{message, path, query, page.session_of(message), peer_name(message)};
+        Request request{message, path, query, page.session_of(message), page.client(message).address};
         page.answer(request);
       },
       this, nullptr);
+  const auto answered = +[](SoupServer*, SoupServerMessage* message, gpointer page) {
+    static_cast<PageServer*>(page)->listener_.note(soup_server_message_get_remote_address(message),
+                                                   PageListener::Step::answered);
+  };
+  g_signal_connect(server_, "request-finished", G_CALLBACK(answered), this);
   soup_server_add_early_handler(server_, "/socket", early, this, nullptr);
   soup_server_add_websocket_handler(
       server_, "/socket", nullptr, nullptr,
       [](SoupServer*, SoupServerMessage* message, const char*, SoupWebsocketConnection* connection,
          gpointer page) { static_cast<PageServer*>(page)->open_socket(message, connection); },
       this, nullptr);
+  listener_.trust(house_.settings.page.trusted_proxies);
   if (!listen(error)) return false;
   if (!passwords_.has(Role::owner)) {
     // Only where the program was started; a log keeps it, but it counts until a password is set, on this machine alone.
@@ -169,12 +194,13 @@ bool PageServer::listen(std::string& error) {
 }
 
 Session* PageServer::session_of(SoupServerMessage* message) {
-  return sessions_.find(token_of(message), now());
+  return sessions_.find(cookie_of(message, kCookie), now());
 }
 
 // Before the body is read: a status that is set here ends the request, of a WebSocket too.
 void PageServer::authorize(SoupServerMessage* message, std::string_view path) {
   if (soup_server_message_get_status(message) != 0) return;
+  listener_.note(soup_server_message_get_remote_address(message), PageListener::Step::head_read);
   SoupMessageHeaders* answer = soup_server_message_get_response_headers(message);
   for (const auto& [name, value] : kHeaders) soup_message_headers_replace(answer, name, value);
   SoupMessageBody* body = soup_server_message_get_request_body(message);
@@ -263,6 +289,10 @@ void PageServer::answer_picture(Request& request) {
 }
 
 void PageServer::answer_session(Request& request) {
+  // A device comes back by itself after a restart.
+  if (request.session == nullptr)
+    if (const std::string token = cookie_of(request.message, kDeviceCookie); !token.empty())
+      if (const Device* device = device_of(token)) begin_device_session(request, *device, token);
   text::JsonLine line;
   line.open('{').key("robot").text(house_.settings.name).key("role");
   if (request.session != nullptr)
@@ -271,6 +301,7 @@ void PageServer::answer_session(Request& request) {
     line.null();
   line.key("first").boolean(!passwords_.has(Role::owner) && is_local(request.message));
   line.key("must-set-password").boolean(request.session != nullptr && request.session->must_set_password);
+  line.key("device").boolean(request.session != nullptr && !request.session->device.empty());
   request.respond(SOUP_STATUS_OK, "application/json", std::string(line.close('}').finish()));
 }
 

@@ -16,6 +16,8 @@
 #include "fleet_client.h"
 #include "page_listener.h"
 #include "robot/access.h"
+#include "robot/client_address.h"
+#include "robot/devices.h"
 #include "robot/events.h"
 #include "robot/passwords.h"
 #include "viewer.h"
@@ -50,6 +52,10 @@ class PageServer {
   void answer_page(Request& request);
   void answer_session(Request& request);
   void log_in(Request& request);
+  void log_in_device(Request& request, const std::string& token);
+  const Device* device_of(const std::string& token);  // as the file has it now
+  void begin_device_session(Request& request, const Device& device, const std::string& token);
+  void end_revoked_devices();
   void log_out(Request& request);
   void set_password(Request& request);
   void answer_events(Request& request);
@@ -71,16 +77,20 @@ class PageServer {
   Camera* camera(std::string_view name) const;
   Events& events_of(const Camera& camera);
   Session* session_of(SoupServerMessage* message);
+  Client client(SoupServerMessage* message) const;
+  bool is_local(SoupServerMessage* message) const;  // asked for by a browser on this machine
   // Continues a request in the background's thread and answers it then.
   void answer_later(Request& request, std::function<void()> work, std::function<void(Request&)> done);
   void finish_log_in(Request& request, Role role, bool one_time);
   void keep_password(Request& request, Role role, std::string hash);
   bool listen(std::string& error);
-  void set_cookie(SoupServerMessage* message, const std::string& token, const char* age) const;
+  void set_cookie(SoupServerMessage* message, const char* name, const std::string& token,
+                  const char* age) const;
   std::string path_of_passwords() const { return house_.settings.state_folder + "/passwords"; }
 
   House house_;
   Passwords passwords_;
+  Devices devices_;
   Sessions sessions_;
   RateLimit limit_;
   Steering steering_;

@@ -62,6 +62,7 @@ void PageServer::open_socket(SoupServerMessage* message, SoupWebsocketConnection
                                     "too many pages are open");
     return;
   }
+  listener_.note(soup_server_message_get_remote_address(message), PageListener::Step::became_socket);
   soup_websocket_connection_set_max_incoming_payload_size(connection, kLongestCommand);
   soup_websocket_connection_set_keepalive_interval(connection, kKeepalive);
   const std::string label = std::string(name(session->role)) + '@' + session->address;
@@ -148,6 +149,8 @@ void PageServer::execute(Viewer& viewer, const Session& session, const PageComma
       return;
     case Kind::camera:
       if (Camera* other = camera(command.name)) {
+        // What was sent before is of the camera before.
+        viewer.send("{\"shows\":\"" + command.name + "\"}");
         viewer.show(other);
         update_watched();
       }
@@ -195,6 +198,7 @@ void PageServer::steer(Viewer& viewer, const PageCommand& command) {
   if (command.kind == Kind::stop) {
     if (house_.base != nullptr) house_.base->stop();
     done = camera.order("stop") || house_.base != nullptr;
+    if (done) viewer.send("{\"done\":\"stopped\"}");
   } else if (command.kind == Kind::drive) {
     if (house_.base == nullptr || house_.mode() == Mode::privacy ||
         !house_.base->drive(command.pan, command.tilt))
@@ -272,8 +276,15 @@ std::string PageServer::state() {
         .key("state")
         .string(robot::name(camera->state()));
     line.key("fault").text(camera->fault()).key("rate").fixed(camera->frames_a_second(), 1);
-    line.key("head").text(camera->head_state()).key("recording").boolean(camera->is_recording());
+    line.key("head").text(camera->head_state()).key("stopped").boolean(camera->is_stopped_by_hand());
+    line.key("recording").boolean(camera->is_recording());
     line.key("recording-fault").text(camera->recording_fault());
+    line.key("settings").open('{');
+    for (const LiveSetting& one : kLiveSettings)
+      if (const auto value =
+              camera->live(std::string(one.element).c_str(), std::string(one.property).c_str()))
+        line.key(one.name).fixed(*value / one.scale, 2);
+    line.close('}');
     line.key("stage").string(camera->stage()).key("latency").fixed(camera->latency(), 1);
     if (camera->settings().recorder) {
       const auto free = record::Folder(camera->settings().recorder->folder).free_bytes();
@@ -290,6 +301,7 @@ std::string PageServer::state() {
 }
 
 void PageServer::tick() {
+  end_revoked_devices();
   close_strangers();
   const std::string now_is = state();
   for (const auto& viewer : viewers_) viewer->send_state(now_is);

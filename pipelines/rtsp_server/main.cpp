@@ -114,7 +114,7 @@ int main(int argc, char** argv) {
   cerberus::SecretSource users;
   g_autofree gchar *address = nullptr, *file = nullptr, *environment = nullptr, *credential = nullptr,
                    *certificate = nullptr, *key = nullptr;
-  gboolean anyone = FALSE;
+  gboolean anyone = FALSE, version = FALSE;
   const GOptionEntry entries[] = {
       {"address", 0, 0, G_OPTION_ARG_STRING, &address, "Address to listen at (127.0.0.1: this machine only)",
        "IP"},
@@ -128,6 +128,7 @@ int main(int argc, char** argv) {
       {"key", 0, 0, G_OPTION_ARG_FILENAME, &key, "Its private key (PEM), if that is another file", "FILE"},
       {"anyone", 0, 0, G_OPTION_ARG_NONE, &anyone,
        "Serve a network without users: whoever is in it may watch", nullptr},
+      {"version", 0, 0, G_OPTION_ARG_NONE, &version, "Print the version", nullptr},
       {}};
   g_autoptr(GOptionContext) context =
       g_option_context_new("LINE - serves each appsink of a pipeline over RTSP");
@@ -136,6 +137,10 @@ int main(int argc, char** argv) {
   g_option_context_add_group(context, gst_init_get_option_group());
   g_autoptr(GError) error = nullptr;
   if (!g_option_context_parse(context, &argc, &argv, &error)) return wrong(error->message);
+  if (version) {
+    std::printf("cerberus-rtsp %s\n", CERBERUS_VERSION);
+    return 0;
+  }
 
   const auto text = [](const gchar* given) { return given ? std::string(given) : std::string(); };
   if (address) settings.address = address;

@@ -17,7 +17,7 @@ class Page:
     certificate = None
 
     def __init__(self, port, host=None):
-        self.port, self.cookie = port, None
+        self.port, self.cookie, self.device = port, None, None
         self.host = host or f'127.0.0.1:{port}'
         self.context = ssl.create_default_context(cafile=self.certificate) if self.certificate else None
         self.origin = f'http{"s" if self.context else ""}://{self.host}'
@@ -28,8 +28,10 @@ class Page:
         if self.context:
             line = http.client.HTTPSConnection('127.0.0.1', self.port, timeout=PATIENCE, context=self.context)
         send = {'Host': self.host} | dict(headers)
-        if self.cookie:
-            send['Cookie'] = f'other=1; cerberus={self.cookie}'
+        cookies = ['other=1'] + [f'{key}={value}' for key, value in
+                                 (('cerberus', self.cookie), ('cerberus-device', self.device)) if value]
+        if len(cookies) > 1:
+            send['Cookie'] = '; '.join(cookies)
         if origin:
             send['Origin'] = self.origin if origin == 'own' else origin
         body = None
@@ -41,9 +43,13 @@ class Page:
         text = answer.read()
         found = dict(answer.getheaders())
         line.close()
-        cookie = found.get('Set-Cookie', '')
-        if cookie.startswith('cerberus='):
-            self.cookie = cookie.split(';')[0].split('=', 1)[1] or None
+        for name, value in answer.getheaders():
+            key, _, cookie = value.split(';')[0].partition('=')
+            if name == 'Set-Cookie' and key == 'cerberus':
+                self.cookie = cookie or None
+            elif name == 'Set-Cookie' and key == 'cerberus-device':
+                assert 'HttpOnly' in value and 'SameSite=Strict' in value, value
+                self.device = cookie or None
         return answer.status, found, text
 
     def log_in(self, user, password):

@@ -35,6 +35,19 @@ if not DRIVER or not shutil.which('chromium'):
     print('skipped: chromium or chromium-driver is not installed')
     sys.exit(77)
 
+# Buttons whose middle is on the screen, and that another element is in front of.
+COVERED = """
+const covered = [];
+for (const button of document.querySelectorAll('button, select, summary, a')) {
+  const box = button.getBoundingClientRect(), x = box.left + box.width / 2, y = box.top + box.height / 2;
+  const rows = document.getElementById('scroller').getBoundingClientRect();
+  if (!button.checkVisibility() || x < 0 || y < 0 || x > innerWidth || (button.closest('#room') && y > rows.bottom)) continue;
+  if (y > innerHeight || button.closest('dialog, #strip, #entrance')) continue;
+  const there = document.elementFromPoint(x, y);
+  if (there !== button && !button.contains(there)) covered.push(button.id || button.textContent);
+}
+return covered.join()"""
+
 SIZES = {'phone': (390, 844, True), 'touch-screen': (800, 480, False), 'desktop': (1280, 800, False)}
 
 
@@ -103,10 +116,31 @@ class Visit:
             assert self.driver.execute_script('return document.documentElement.scrollWidth') <= width, name
             box = self.one('stop').rect
             assert box['y'] + box['height'] <= height and box['width'] >= 90 and box['height'] >= 90, (name, box)
+            self.covers_nothing(name, folder)
+
+    def covers_nothing(self, name, folder):
+        """Wherever the page is scrolled to, STOP is in sight and no button lies under another."""
+        for place in (0, .3, .6, 1):
+            self.driver.execute_script(
+                "const all = document.getElementById('scroller'); all.scrollTop = arguments[0] * all.scrollHeight", place)
+            self.wait('STOP is in sight', lambda: self.driver.execute_script("""
+                return ['stop', 'stop-too'].some((id) => {
+                  const box = document.getElementById(id).getBoundingClientRect();
+                  return box.height > 0 && box.bottom > 8 && box.top < innerHeight - 8;
+                })"""))
+            end = time.monotonic() + 5  # the row of STOP comes and goes a frame after it is scrolled
+            while (covered := self.driver.execute_script(COVERED)) and time.monotonic() < end:
+                time.sleep(.1)
+            assert not covered, f'{name}, scrolled to {place}: {covered} lie under something'
+        self.driver.save_screenshot(str(folder / f'{name}-end.png'))
+        self.driver.execute_script("document.getElementById('scroller').scrollTop = 0")
 
 
 def owner_visits(driver, port, one_time, folder, robot):
     page = Visit(driver, port)
+    page.wait('the entrance', lambda: page.one('password').is_displayed())
+    assert not [one.text for one in driver.find_elements(By.TAG_NAME, 'button') if one.is_displayed() and one.text == 'STOP']
+    driver.save_screenshot(str(folder / 'entrance.png'))
     page.log_in('owner', one_time)
     page.wait('the form for the first password', lambda: page.one('new').is_displayed())
     page.one('new').send_keys('long enough')
@@ -117,26 +151,91 @@ def owner_visits(driver, port, one_time, folder, robot):
     driver.execute_cdp_cmd('Input.dispatchKeyEvent', {'type': 'keyDown', 'key': 'ArrowRight', 'code': 'ArrowRight'})
     page.wait('turned by hand', lambda: 'manual' in page.status() or 'limited' in page.status())
     driver.execute_cdp_cmd('Input.dispatchKeyEvent', {'type': 'keyUp', 'key': 'ArrowRight', 'code': 'ArrowRight'})
+    assert not page.one('stopped').is_displayed()
     page.one('stop').click()
+    page.wait('it says that it is stopped', lambda: page.one('stopped').is_displayed() and 'Head\nstopped' in page.status())
+    driver.save_screenshot(str(folder / 'stopped.png'))
     page.one('auto').click()
-    page.wait('automatic', lambda: 'manual' not in page.status())
+    page.wait('automatic', lambda: 'manual' not in page.status() and not page.one('stopped').is_displayed())
+    values_in_force(driver, page)
+    lost_connection(driver, page)
+    two_cameras(driver, page, folder)
     drives_by_keys(driver, page, robot / 'drive')
     follows_by_tap(driver, page)
     driver.execute_script("document.getElementById('passwords').open = true")
+    choose = lambda role: driver.execute_script("document.getElementById('whose').value = arguments[0]", role)
     for role in ('operator', 'viewer'):
-        page.one('whose').send_keys(role)
+        choose(role)
         page.one('theirs').send_keys('also long' + Keys.ENTER)
+        choose('owner')  # before the answer comes
         page.wait('a password is set', lambda role=role: f'{role} is set' in page.one('word').text)
+        assert 'good' in page.one('word').get_attribute('class')
     two_tabs(driver, page, port)
     events(driver, page, robot)
     stranger(driver, page, port)
     driver.find_element(By.CSS_SELECTOR, '[data-mode=privacy]').click()
     page.wait('privacy', lambda: 'Privacy' in page.one('veil').text and 'off' in page.status())
+    driver.save_screenshot(str(folder / 'privacy.png'))
+    for button in driver.find_elements(By.CSS_SELECTOR, '#steering button, #speed, #drive-pad button'):
+        assert not button.is_enabled(), button.text
     driver.find_element(By.CSS_SELECTOR, '[data-mode=armed]').click()
     page.wait('a picture again', page.has_picture)
     driver.find_element(By.CSS_SELECTOR, '[data-mode=armed]').click()
     page.one('logout').click()
     page.wait('logged out', lambda: page.one('password').is_displayed())
+
+
+def values_in_force(driver, page):
+    """The settings show what is in force, also after it was changed elsewhere."""
+    value = lambda: driver.execute_script("return document.querySelector('#live-settings [name=quality]').value")
+    page.wait('the quality of the file', lambda: value() == '75')
+    driver.execute_script("send('set quality 60')")
+    page.wait('the quality of now', lambda: value() == '60')
+
+
+def lost_connection(driver, page):
+    """What cannot be sent cannot be pressed; then the page comes back by itself."""
+    enabled = driver.execute_async_script("""
+        const done = arguments[0];
+        socket.addEventListener('close', () => setTimeout(() => done(
+          [...document.querySelectorAll('#steering button, [data-mode], #drive-pad button, #stop-too')]
+            .filter((one) => !one.disabled && one.getClientRects().length).map((one) => one.textContent))));
+        socket.close()""")
+    assert enabled == [], enabled
+    page.wait('connected again', lambda: page.one('stop').is_enabled() and page.has_picture())
+
+
+def two_cameras(driver, page, folder):
+    """A camera that is down shows nothing of the one before, and a reload comes back to it."""
+    objects = lambda: 'Objects' in page.status() or 'Looks at' in page.status()
+    page.wait('facts of the first camera', objects)
+    choose = lambda name: driver.execute_script("choose(arguments[0])", name)
+    choose('broken')
+    assert not objects() and not page.has_picture()
+    page.wait('it says why', lambda: 'waiting' in page.one('veil').text)
+    time.sleep(1.5)  # pictures that were on their way
+    assert not objects() and driver.execute_script('return facts') is None
+    driver.save_screenshot(str(folder / 'down.png'))
+    driver.refresh()
+    page.wait('the same camera', lambda: driver.execute_script('return cameraName') == 'broken'
+              and page.one('camera').get_attribute('value') == 'broken')
+    assert not objects()
+    choose('front')
+    page.wait('the first camera again', page.has_picture)
+
+
+def kiosk(driver, port, program, folder, restart):
+    """A screen without a keyboard is let in by its token, and comes back by itself after a restart."""
+    made = subprocess.run([program, '--make-device-token', folder / 'robot.toml'], capture_output=True, text=True, check=True)
+    driver.get('about:blank')
+    driver.get(re.search(r'http://\S+#device=[0-9a-f]{64}', made.stdout)[0])
+    page = Visit.__new__(Visit)
+    page.driver = driver
+    page.wait('a picture without a password', page.has_picture)
+    assert 'device' not in driver.current_url and not page.one('logout').is_displayed()
+    restart()
+    page.wait('the connection is lost', lambda: 'lost' in page.one('veil').text)
+    page.wait('a picture after the restart', page.has_picture)
 
 
 def follows_by_tap(driver, page):
@@ -156,7 +255,7 @@ def follows_by_tap(driver, page):
             driver.execute_cdp_cmd('Input.dispatchMouseEvent', {
                 'type': kind, 'x': where[0], 'y': where[1], 'button': 'left', 'clickCount': 1})
         return False
-    driver.execute_script('scrollTo(0, 0)')
+    driver.execute_script("document.getElementById('scroller').scrollTop = 0")
     page.wait('a tap follows', tapped)
     page.wait('the head follows', lambda: not re.search('manual|stopped', page.status()))
 
@@ -328,10 +427,21 @@ def main():
 [base]
 command = "sh -c 'cat >> {name}/drive'"
 max-speed = 0.5
+[[camera]]
+name = "broken"
+kind = "file"
+file = "no-video.avi"
 ''')
+        (folder / 'no-video.avi').write_text('this is no video')
         with open(folder / 'log', 'w+', encoding='utf-8') as log:
-            process = subprocess.Popen([sys.argv[1], folder / 'robot.toml'], stdout=log, stderr=subprocess.STDOUT)
-            driver = None
+            start = lambda: subprocess.Popen([sys.argv[1], folder / 'robot.toml'], stdout=log, stderr=subprocess.STDOUT)
+            process, driver = start(), None
+
+            def restart():
+                nonlocal process
+                process.send_signal(signal.SIGTERM)
+                process.wait(PATIENCE)
+                process = start()
             try:
                 driver = browser()
                 end, one_time = time.monotonic() + PATIENCE, None
@@ -344,6 +454,7 @@ max-speed = 0.5
                 guesses(driver, port)
                 errors = severe(driver)
                 assert not errors, errors
+                kiosk(driver, port, sys.argv[1], folder, restart)
             except BaseException:
                 print((folder / 'log').read_text(), file=sys.stderr)
                 raise

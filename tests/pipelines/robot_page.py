@@ -168,6 +168,87 @@ ROUTES = [('GET', '/log', None), ('GET', '/picture/front', None), ('POST', '/pic
           ('POST', '/password', (('user', 'owner'), ('password', 'another one'))), ('POST', '/logout', None)]
 
 
+def drips(page):
+    """Heads that never end: twenty connections that send a letter now and then are closed in time, and none has an effect
+    on another."""
+    lines = [socket.create_connection(('127.0.0.1', page.port), PATIENCE) for _ in range(20)]
+    for line in lines:
+        line.settimeout(0)
+        line.send(b'\x16\x03' if page.context else b'GET / HTTP/1.1\r\nX-Slow: ')
+    begin, open_lines = time.monotonic(), set(lines)
+
+    def closed(line):
+        try:
+            line.send(b'\x03' if page.context else b'x')
+            return line.recv(100) == b''
+        except BlockingIOError:
+            return False
+        except OSError:
+            return True
+    while open_lines:
+        open_lines = {line for line in open_lines if not closed(line)}
+        assert time.monotonic() - begin < 40, f'{len(open_lines)} connections drip on'
+        time.sleep(.5)
+    assert page.ask('GET', '/session')[0] == 200
+
+
+def heads(page):
+    """HEAD is GET without the body, and no answer names the server's program."""
+    for path in ('/', '/session', '/events', '/page.js'):
+        status, headers, body = page.ask('GET', path)
+        again, same, nothing = page.ask('HEAD', path)
+        assert (status, again, nothing) == (200, 200, b'') and same['Content-Type'] == headers['Content-Type'], path
+        assert same['Content-Length'] == str(len(body)) == headers['Content-Length'], (path, same)
+        assert 'Server' not in headers and 'Server' not in same, headers
+    assert page.ask('HEAD', '/login')[0] == 404 and page.ask('GET', '/nothing')[0] == 404
+
+
+def proxied(port, log):
+    """Behind the proxy that the configuration trusts, guesses lock out the one who makes them."""
+    stranger, owner = Page(port), Page(port)
+    guess = lambda headers: stranger.ask('POST', '/login', {'user': 'owner', 'password': 'a guess'}, headers=headers)[0]
+    answers = [guess({'X-Forwarded-For': f'198.51.100.{k}, 203.0.113.5'}) for k in range(8)]
+    assert answers[0] == 403 and answers[-1] == 429, answers
+    assert guess({'Forwarded': 'for=198.51.100.9, for="203.0.113.5:99"'}) == 429
+    status, _, text = owner.ask('POST', '/login', {'user': 'owner', 'password': 'long enough'},
+                                headers={'X-Forwarded-For': '198.51.100.7'})
+    assert status == 200, text
+    for words in ('203.0.113.5 gave a wrong password for the role owner', 'owner@198.51.100.7 logged in'):
+        assert words in log(), f'"{words}" is not in the access log'
+    # A stranger who comes by a proxy on this machine is not at this machine.
+    answer = stranger.ask('GET', '/session', headers={'X-Forwarded-For': '203.0.113.5'})[2]
+    assert json.loads(answer)['first'] is False
+
+
+def devices(program, port, folder):
+    """A screen without a keyboard: its token is made on the machine, kept as a hash, and counts until it is revoked."""
+    def tool(*words):
+        return subprocess.run([program, *words, folder / 'robot.toml'], capture_output=True, text=True, timeout=PATIENCE, check=False)
+    made = tool('--make-device-token', '--device', 'screen')
+    token = re.search(r'#device=([0-9a-f]{64})\n', made.stdout)[1]
+    assert made.returncode == 0 and made.stdout.count(token) == 2, made
+    kept = folder / 'state' / 'devices'
+    assert kept.stat().st_mode & 0o777 == 0o600 and token not in kept.read_text() and 'viewer screen ' in kept.read_text()
+    assert tool('--make-device-token', '--device', 'screen').returncode == 1
+    assert tool('--make-device-token', '--device', 'x', '--role', 'owner').returncode == 1
+    assert tool('--list-devices').stdout == 'screen (viewer)\n'
+    screen = Page(port)
+    assert screen.ask('POST', '/login', {'device': token[:-1]})[0] == 403
+    assert screen.ask('POST', '/login', {'device': token})[0] == 200
+    assert screen.ask('GET', '/events')[0] == 200 and screen.ask('POST', '/delete', {'camera': 'front', 'id': '1'})[0] == 403
+    screen.cookie = None  # what a restart of the robot comes to
+    assert screen.ask('GET', '/events')[0] == 401
+    session = json.loads(screen.ask('GET', '/session')[2])
+    assert session['role'] == 'viewer' and session['device'] is True, session
+    line = Socket(screen)
+    assert tool('--revoke-device', 'screen').returncode == 0 and tool('--revoke-device', 'screen').returncode == 1
+    wait_until('the revoked device is out', lambda: screen.ask('GET', '/events')[0] == 401)
+    while line.receive() is not None:
+        pass
+    assert json.loads(screen.ask('GET', '/session')[2])['role'] is None
+    assert screen.ask('POST', '/login', {'device': token})[0] == 403
+
+
 def first_password(page, one_time):
     # Nothing but the entrance is open to a stranger.
     statuses(page, {route: 401 for route in ROUTES})
@@ -175,7 +256,7 @@ def first_password(page, one_time):
                     ('GET', '/state/passwords', None): 404, ('GET', '/../state/passwords', None): 404,
                     ('PUT', '/login', None): 404, ('GET', '/login', None): 404})
     assert json.loads(page.ask('GET', '/session')[2]) == {
-        'robot': 'the robot', 'role': None, 'first': True, 'must-set-password': False}
+        'robot': 'the robot', 'role': None, 'first': True, 'must-set-password': False, 'device': False}
     headers = page.ask('GET', '/')[1]
     assert "frame-ancestors 'none'" in headers['Content-Security-Policy'] and headers['X-Frame-Options'] == 'DENY'
     # The one-time password opens nothing but the form for the first one.
@@ -474,7 +555,7 @@ def main():
         (folder / 'viewers').write_text('anna:long enough\n')
         (folder / 'viewers').chmod(0o600)
         tls = shutil.which('openssl')
-        page = f'port = {port}\n' + ('tls = true' if tls else '')
+        page = f'port = {port}\ntrusted-proxy = "127.0.0.1"\n' + ('tls = true' if tls else '')
         (folder / 'robot.toml').write_text(CONFIGURATION.replace('port = PORT', page)
                                            + WEBHOOK.replace('HOOK', str(receiver.server_port)).replace('FOLDER', name)
                                            + (RTSP.replace('STREAM', str(stream)).replace('TLS', str(bool(tls)).lower()) if stream else ''))
@@ -497,6 +578,9 @@ def main():
                 assert operator.log_in('operator', 'password of operator') == 200
                 assert viewer.log_in('viewer', 'password of viewer') == 200
                 strangers(owner)
+                heads(owner)
+                proxied(port, (folder / 'log').read_text)
+                devices(sys.argv[1], port, folder)
                 pictures(owner)
                 steering(owner, operator, viewer, stream)
                 reload_while_parking(owner, process, folder)
@@ -507,6 +591,7 @@ def main():
                 recordings(owner, operator, viewer, folder)
                 webhook()
                 idle_connections(owner)
+                drips(owner)
                 assert viewer.ask('POST', '/logout', {})[0] == 200 and viewer.ask('GET', '/events')[0] == 401
                 wrong_passwords(port)
                 process.send_signal(signal.SIGTERM)
@@ -514,7 +599,7 @@ def main():
                 text = (folder / 'log').read_text()
                 assert code == 0, text
                 assert (folder / 'state' / 'passwords').stat().st_mode & 0o777 == 0o600
-                for words in ('owner@127.0.0.1 logged in', 'operator@127.0.0.1 steers front', 'owner@127.0.0.1 deleted',
+                for words in ('owner@127.0.0.1 logged in', '127.0.0.1 gave a wrong password for the role owner', 'operator@127.0.0.1 steers front', 'owner@127.0.0.1 deleted',
                               'owner@127.0.0.1 sets mode privacy'):
                     assert words in text, f'"{words}" is not in the access log: {text}'
                 for secret in ('long enough', 'password of operator', 'password of viewer', 'guess'):

@@ -7,6 +7,7 @@
 #include "robot/base_drive.h"
 #include "robot/byte_range.h"
 #include "robot/client_address.h"
+#include "robot/devices.h"
 #if HAVE_ARGON2
 #include "robot/passwords.h"
 #endif
@@ -109,7 +110,34 @@ START_TEST(only_the_entrance_is_open_and_what_changes_needs_more) {
   ck_assert(find_route("POST", "/keep")->role == Role::operator_);
   ck_assert(find_route("GET", "/events/a/1/video")->role == Role::viewer);
   ck_assert(!find_route("GET", "/delete") && !find_route("GET", "/eventsx") && !find_route("PUT", "/login"));
-  ck_assert(!find_route("GET", "") && !find_route("GET", "/page.js/") && !find_route("HEAD", "/events"));
+  ck_assert(!find_route("GET", "") && !find_route("GET", "/page.js/") && !find_route("HEAD", "/login"));
+  ck_assert(find_route("HEAD", "/events")->role == Role::viewer &&
+            find_route("HEAD", "/")->role == Role::none);
+}
+END_TEST
+
+START_TEST(a_device_is_known_by_its_hash_until_it_is_revoked) {
+  const std::string hash(64, 'a'), other(64, 'b');
+  Devices devices;
+  ck_assert(devices.fault_of("kitchen", Role::viewer).empty());
+  devices.add("kitchen", Role::viewer, hash);
+  devices.add("gate", Role::operator_, other);
+  ck_assert(!devices.fault_of("kitchen", Role::viewer).empty());  // it is there
+  for (const char* name : {"", "a b", "a\nb", "a/b"})
+    ck_assert(!devices.fault_of(name, Role::viewer).empty());
+  ck_assert(!devices.fault_of("x", Role::owner).empty() && !devices.fault_of("x", Role::none).empty());
+  Devices later;
+  ck_assert(later.restore(devices.state()));
+  ck_assert(later.find(hash) && later.find(hash)->name == "kitchen" &&
+            later.find(hash)->role == Role::viewer);
+  ck_assert(later.find(other)->role == Role::operator_ && !later.find(std::string(64, 'c')) &&
+            !later.find(""));
+  ck_assert(later.revoke("kitchen") && !later.revoke("kitchen") && !later.find(hash) && later.find(other));
+  for (const std::string& wrong :
+       {std::string("viewer a\n"), "viewer a " + hash, "owner a " + hash + "\n", "viewer a b " + hash + "\n",
+        "viewer a " + hash + "x\n", "viewer a " + hash + "\nviewer a " + other + "\n"})
+    ck_assert_msg(!later.restore(wrong) && later.all().empty(), "%s", wrong.c_str());
+  ck_assert(later.restore("") && later.all().empty());
 }
 END_TEST
 
@@ -400,6 +428,7 @@ int main() {
                           every_message_is_read_letter_by_letter,
                           a_viewer_may_watch_an_operator_steer_and_the_owner_begin_and_end_privacy,
                           only_the_entrance_is_open_and_what_changes_needs_more,
+                          a_device_is_known_by_its_hash_until_it_is_revoked,
                           a_trusted_proxy_tells_whose_request_it_hands_on_and_nobody_else_does,
                           another_name_for_this_machine_is_refused,
                           an_origin_is_the_pages_own_or_configured,

@@ -9,6 +9,7 @@
 
 #include "publish/mqtt_report.h"
 #include "publish/streams/encoders.h"
+#include "robot/client_address.h"
 
 namespace cerberus::robot {
 
@@ -90,6 +91,12 @@ PageSettings read_page(const TomlValue& table, Folders folders, Mistakes& mistak
       reader.complain("origins",
                       "\"" + origin + "\" is no origin: \"https://robot.example:8443\", without a path");
   }
+  reader.text_or_texts("trusted-proxy", settings.trusted_proxies);
+  for (const std::string& proxy : settings.trusted_proxies)
+    if (!is_network(proxy))
+      reader.complain("trusted-proxy", "\"" + proxy +
+                                           "\" is no numeric address of a proxy, nor a network of them: "
+                                           "\"127.0.0.1\", \"10.0.0.0/8\"");
   reader.whole("picture-width", settings.picture_width, 160, 3840);
   reader.whole("quality", settings.quality, 10, 100);
   read_tls(reader, settings.tls, settings.certificate, settings.key, folders, files);

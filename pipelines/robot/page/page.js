@@ -5,7 +5,7 @@
 const at = (id) => document.getElementById(id);
 const kRepeat = 150;  // ms between repetitions of a move, which ends 500 ms after the last one
 let socket = null, hello = null, state = null, facts = null, cameraName = '';
-let gone = false;
+let gone = false, shown = '';  // `shown`: the camera of which the socket's pictures are
 
 // ---- log-in
 
@@ -14,13 +14,26 @@ async function post(path, fields) {
   return {ok: response.ok, text: (await response.text()).trim()};
 }
 
+// The address may hold a device's token once, or the name of the camera that is shown: #device=TOKEN, #NAME.
+async function useToken() {
+  const token = /^#device=(.+)$/.exec(location.hash);
+  if (!token) return;
+  history.replaceState(null, '', location.pathname);
+  const done = await post('/login', {device: token[1]});
+  if (!done.ok) at('entrance-word').textContent = done.text;
+}
+
 async function enter() {
+  await useToken();
   const session = await (await fetch('/session')).json();
   for (const name of document.querySelectorAll('.robot-name')) name.textContent = session.robot;
   document.title = session.robot;
   const inside = session.role && !session['must-set-password'];
   at('entrance').hidden = inside;
   at('room').hidden = !inside;
+  document.body.classList.toggle('inside', Boolean(inside));
+  at('logout').hidden = session.device;  // it would come back by itself, and has no keyboard for a password
+  showStop();
   at('login').hidden = Boolean(session.role);
   at('first-hint').hidden = !session.first;
   at('new-password').hidden = !session['must-set-password'];
@@ -62,6 +75,8 @@ function send(words) {
 function connect() {
   socket = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/socket`);
   socket.binaryType = 'arraybuffer';
+  shown = '';
+  socket.onopen = () => enableButtons();
   socket.onmessage = (event) => {
     if (typeof event.data === 'string') onReport(JSON.parse(event.data));
     else onPicture(event.data, event.target);
@@ -69,7 +84,9 @@ function connect() {
   socket.onclose = async () => {
     socket = null;
     letGo();
+    enableButtons();
     if (gone) return;
+    forgetPicture();
     veil('The connection is lost. It is tried again.');
     setTimeout(async () => {
       try {
@@ -84,8 +101,9 @@ function connect() {
 }
 
 let wordTimer = 0;
-function say(word) {
+function say(word, good = false) {
   at('word').textContent = word;
+  at('word').className = good ? 'good' : '';
   clearTimeout(wordTimer);
   wordTimer = setTimeout(() => { at('word').textContent = ''; }, 4000);
 }
@@ -99,20 +117,29 @@ function may(role) {
   return hello && roles.indexOf(hello.role) >= roles.indexOf(role);
 }
 
+const connected = () => Boolean(socket) && socket.readyState === WebSocket.OPEN;
+
+// What was shown of one camera is no picture of another, nor of one that is down.
+function forgetPicture() {
+  pen.clearRect(0, 0, picture.width, picture.height);
+  facts = null;
+  drawRadar();
+}
+
 function onReport(report) {
+  if (report.shows) shown = report.shows;
+  if (report.done === 'stopped') say('Stopped.', true);
   if (report.refused) {
     say(report.refused);
     letGo();
   }
   if (report.hello) {
     hello = report.hello;
-    const wanted = cameraName;
+    const wanted = cameraName || decodeURIComponent(location.hash.slice(1));
     at('camera').replaceChildren(...hello.cameras.map((camera) => new Option(camera.name)));
     at('camera').hidden = hello.cameras.length < 2;
     at('base').hidden = !hello.base;
-    cameraName = hello.cameras[0].name;
-    if (hello.cameras.some((camera) => camera.name === wanted)) choose(wanted);
-    else choose(cameraName);
+    choose(hello.cameras.some((camera) => camera.name === wanted) ? wanted : hello.cameras[0].name);
   }
   if (report.number) {
     send(`seen ${report.number}`);
@@ -126,14 +153,26 @@ function onReport(report) {
 }
 
 function choose(name) {
-  cameraName = name;
+  if (cameraName !== name) {
+    cameraName = name;
+    forgetPicture();
+    veil('The picture is on its way.');
+  }
+  // A reload, and a screen that starts by itself, come back to it.
+  if (hello.cameras.length > 1) history.replaceState(null, '', `#${encodeURIComponent(name)}`);
   at('camera').value = name;
   showSettings();
   send(`camera ${name}`);
   enableButtons();
+  if (state) showState();
   loadEvents();
 }
 at('camera').addEventListener('change', () => choose(at('camera').value));
+window.addEventListener('hashchange', async () => {
+  if (location.hash.startsWith('#device=')) return location.reload();
+  const name = decodeURIComponent(location.hash.slice(1));
+  if (hello && name !== cameraName && hello.cameras.some((camera) => camera.name === name)) choose(name);
+});
 
 const mine = () => state && state.cameras.find((camera) => camera.name === cameraName);
 const about = () => hello && hello.cameras.find((camera) => camera.name === cameraName);
@@ -141,22 +180,24 @@ const isRecording = () => state.cameras.some((camera) => camera.recording);
 
 at('set-password').addEventListener('submit', async (event) => {
   event.preventDefault();
-  const done = await post('/password', {user: at('whose').value, password: at('theirs').value});
+  const role = at('whose').value, password = at('theirs').value;  // the form may say another when the answer comes
   at('theirs').value = '';
-  say(done.ok ? `The password of the ${at('whose').value} is set.` : done.text);
+  const done = await post('/password', {user: role, password});
+  say(done.ok ? `The password of the ${role} is set.` : `The password of the ${role} is not set: ${done.text}`, done.ok);
 });
 
 function enableButtons() {
   at('passwords').hidden = !may('owner');
-  const steer = may('operator') && about() && about().head;
-  for (const button of document.querySelectorAll('#steering button, #speed')) button.disabled = !steer;
-  if (hello && hello.base && may('operator')) at('stop').disabled = false;
+  for (const button of document.querySelectorAll('#steering button, #speed')) button.disabled = !steers();
+  at('stop').disabled = !stops();
   for (const button of document.querySelectorAll('#drive-pad button')) button.disabled = !drives();
-  at('stage').disabled = !may('operator');
+  at('stage').disabled = !may('operator') || !connected();
+  for (const input of document.querySelectorAll('#live-settings input')) input.disabled = !connected();
+  showStop();
   at('log-box').hidden = at('settings').hidden = !may('owner');
   for (const button of document.querySelectorAll('[data-mode]')) {
     const needsOwner = button.dataset.mode === 'privacy' || (state && state.mode === 'privacy');
-    button.disabled = !may(needsOwner ? 'owner' : 'operator');
+    button.disabled = !connected() || !may(needsOwner ? 'owner' : 'operator');
     button.setAttribute('aria-pressed', String(Boolean(state) && state.mode === button.dataset.mode));
   }
 }
@@ -170,18 +211,19 @@ function showState() {
   const camera = mine();
   if (!camera) return;
   if (state.mode === 'privacy') {
+    forgetPicture();
     veil('Privacy: nothing is shown or recorded.');
-    pen.clearRect(0, 0, picture.width, picture.height);
-    facts = null;
-    drawRadar();
   } else if (camera.state !== 'running') {
+    forgetPicture();
     veil(`The camera is ${camera.state}. ${camera.fault}`);
   }
+  at('stopped').hidden = !camera.stopped;
+  showValues(camera);
   const rows = [['Camera', `${camera.state}, ${camera.rate} frames/s`]];
-  if (camera.latency > 0) rows.push(['Latency', `${camera.latency.toFixed(0)} ms until it is analysed`]);
+  if (camera.state === 'running' && camera.latency > 0) rows.push(['Latency', `${camera.latency.toFixed(0)} ms until it is analysed`]);
   if (document.activeElement !== at('stage')) at('stage').value = camera.stage;
   if (camera.fault) rows.push(['Fault', camera.fault]);
-  if (about().head) rows.push(['Head', camera.head || '\u2013']);
+  if (about().head) rows.push(['Head', camera.stopped ? 'stopped' : camera.head || '\u2013']);
   if (facts && facts.pose) rows.push(['Looks at', `${facts.pose.pan.toFixed(1)}\u00b0, ${facts.pose.tilt.toFixed(1)}\u00b0`]);
   if (facts && facts.fusion) rows.push(['Rule', `${facts.fusion.name} (${facts.fusion.action})`]);
   if (facts && facts.pir) {
@@ -207,13 +249,20 @@ function showSettings() {
   at('live-settings').replaceChildren(...hello.settings.filter(mine).map((setting) => {
     const label = document.createElement('label'), input = document.createElement('input');
     label.textContent = setting.words;
-    Object.assign(input, {type: 'number', min: setting.least, max: setting.most, step: 'any'});
+    Object.assign(input, {type: 'number', min: setting.least, max: setting.most, step: 'any', name: setting.name});
     input.addEventListener('change', () => {
       if (input.value !== '' && input.reportValidity()) send(`set ${setting.name} ${Number(input.value)}`);
     });
     label.append(input);
     return label;
   }));
+}
+// The values in force, but for one that is being written.
+function showValues(camera) {
+  for (const input of document.querySelectorAll('#live-settings input')) {
+    const value = camera.settings[input.name];
+    if (input !== document.activeElement) input.value = value === undefined ? '' : Number(value);
+  }
 }
 at('live-settings').addEventListener('submit', (event) => event.preventDefault());
 
@@ -284,8 +333,12 @@ const picture = at('picture'), pen = picture.getContext('2d');
 async function onPicture(data, from) {
   const view = new DataView(data);
   const number = view.getBigUint64(0), length = view.getUint32(8);
+  const of = shown;  // which camera: it says so before its first picture
   try {
     const image = await createImageBitmap(new Blob([new Uint8Array(data, 12 + length)], {type: 'image/jpeg'}));
+    const camera = mine();
+    if (from !== socket || of !== cameraName || (state && state.mode === 'privacy') || (camera && camera.state !== 'running'))
+      return image.close();
     if (picture.width !== image.width || picture.height !== image.height) {
       picture.width = image.width;
       picture.height = image.height;
@@ -293,7 +346,7 @@ async function onPicture(data, from) {
     }
     pen.drawImage(image, 0, 0);
     image.close();
-    if (!state || state.mode !== 'privacy') veil('');
+    veil('');
     facts = length ? JSON.parse(new TextDecoder().decode(new Uint8Array(data, 12, length))) : null;
     drawRadar();
   } finally {
@@ -324,7 +377,11 @@ function release() {
 }
 
 const speed = () => at('speed').value / 100;
-const steers = () => may('operator') && about() && about().head;
+const runs = () => connected() && Boolean(state) && state.mode !== 'privacy';
+const steers = () => runs() && may('operator') && Boolean(about() && about().head) && mine()?.state === 'running';
+// Also while privacy parks the head: what moves can be stopped.
+const stops = () => connected() && may('operator') && Boolean(state) && Boolean(
+  (hello.base && state.mode !== 'privacy') || (about() && about().head && ['running', 'parking'].includes(mine()?.state)));
 
 for (const button of document.querySelectorAll('#pad button')) {
   const pan = Number(button.dataset.pan), tilt = Number(button.dataset.tilt);
@@ -357,15 +414,22 @@ for (const button of [at('stop'), at('stop-too')]) {
   button.addEventListener('pointerdown', () => { if (!button.disabled) stop(); });
   button.addEventListener('click', (event) => { if (event.detail === 0) stop(); });
 }
-new IntersectionObserver((seen) => { at('stop-too').hidden = at('stop').disabled || seen[0].isIntersecting; })
-  .observe(at('stop'));
+// Another one comes up while the large one is scrolled out of sight, in a row of its own.
+let stopInSight = true;
+function showStop() {
+  at('stop-row').hidden = at('room').hidden || at('stop').disabled || stopInSight;
+}
+new IntersectionObserver((seen) => {
+  stopInSight = seen[seen.length - 1].isIntersecting;
+  showStop();
+}).observe(at('stop'));
 at('auto').addEventListener('click', () => send('auto'));
 at('home').addEventListener('click', () => send('home'));
 for (const button of document.querySelectorAll('[data-mode]'))
   button.addEventListener('click', () => send(`mode ${button.dataset.mode}`));
 
 // The base: a key or a button that is held drives, as the head turns.
-const drives = () => may('operator') && hello && hello.base;
+const drives = () => runs() && may('operator') && Boolean(hello.base);
 let drive = null, driver = 0;
 
 function driveTo(speed, yaw) {
@@ -429,7 +493,7 @@ document.addEventListener('keydown', (event) => {
   const inField = event.target.closest('input, select, #strip');
   if (event.key === 'Escape' || (event.key === ' ' && !event.target.closest('button, input, select, a'))) {
     event.preventDefault();
-    if (steers() || drives()) stop();
+    if (stops()) stop();
   } else if (kDriveKeys[event.code] && !inField && drives()) {
     event.preventDefault();
     if (event.repeat) return;
@@ -527,7 +591,7 @@ function drawRadar() {
   draw.arc(middle, middle, radius, 0, 2 * Math.PI);
   draw.stroke();
   const pan = facts && facts.pose ? facts.pose.pan : 0;
-  sector(pan, is.fov || 60, radius * .92, 'rgb(80 160 90 / .35)');
+  if (facts) sector(pan, is.fov || 60, radius * .92, 'rgb(80 160 90 / .35)');
   if (facts && facts.pose) words.push(`the head looks to ${pan.toFixed(0)} degrees`);
   sensors.forEach((bearing, k) => {
     const [x, y] = place(bearing, 1.08);
