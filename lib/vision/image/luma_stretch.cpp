@@ -66,9 +66,10 @@ void LumaStretch::follow(const Levels& levels, double range) {
 LumaSource LumaStretch::stretched(const LumaSource& source) {
   if (source.word_shift == 0 || source.width <= 0 || source.height <= 0) return source;
   const double range = 256 << source.word_shift;
+  const Levels levels = levels_of(source);
+  if (part_.span == 0 && levels.brightest - levels.darkest < kParameters.even * range) return source;
   // A picture that is shown again gives the same luma again.
-  if (const Levels levels = levels_of(source); part_.span == 0 || levels != last_)
-    follow(levels, range), last_ = levels;
+  if (part_.span == 0 || levels != last_) follow(levels, range), last_ = levels;
   LumaSource result = source;
   if (part_.span >= range) return result;
   result.low = static_cast<int>(part_.low);

@@ -17,6 +17,8 @@ struct LumaStretchParameters {
   // The least part of the range that is stretched. Derived: 10 K of a thermal camera with .01 K to a level, 16 levels of 10
   // bits; less is noise.
   double least = 1.0 / 64;
+  // Values that are spread over less are one: there is nothing to stretch yet. Derived: a fifth of a thermal camera's noise.
+  double even = 1.0 / 4096;
   // Left on either side of the values, in spans of them: who comes in is warmer than the room. Derived: a person at 305 K in
   // a room of 290 to 299 K lies within, or is white.
   double margin = 0.25;
