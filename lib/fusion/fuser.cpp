@@ -43,7 +43,11 @@ FuserOptions sane(FuserOptions options) {
 }  // namespace
 
 FuserOptions paper_options() {
-  return {.rules = RuleSet::table, .return_delay = Time::zero(), .hysteresis = 0};
+  return {.rules = RuleSet::table,
+          .camera_hold = Time::zero(),
+          .return_delay = Time::zero(),
+          .hold_stopped = Time::zero(),
+          .hysteresis = 0};
 }
 
 struct Fuser::State {

@@ -32,7 +32,7 @@ struct FuserOptions {
   Interval limits = kDefaultLimits;      // of pan
   Time dwell = std::chrono::seconds(2);  // least time at a place before the next one is tried
 };
-// The options of the paper: its table, no return delay, no hysteresis.
+// The options of the paper: its table, and nothing that lasts longer than what causes it.
 FuserOptions paper_options();
 
 enum class TrackState : std::uint8_t { seen, coasted, stopped };

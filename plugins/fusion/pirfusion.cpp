@@ -38,11 +38,10 @@
  * buffer), and is then sent to the PIR pads by that event. Both events, and seeks, are passed on to the video and to the PIR
  * pads; where a video can begin at key frames only, accurate seeks keep a recording of sensors in step with it.
  *
- * `rules=paper` is the paper's table and no more, without `return-delay` and `hysteresis`. A
- * table of your own is described in the manual (rules); one that leaves a case open, contradicts
- * itself or has a rule that never applies is refused and the case named. A warning names what of it
- * lies beyond `pan-min` and `pan-max`, and rules for another number of sensors than the
- * PIR pads have; another one, poses that come from another head than `head` only.
+ * `rules=paper` is the paper's table and no more: `camera-hold`, `hold-stopped`, `return-delay` and `hysteresis` do not count.
+ * A table of your own is described in the manual (rules); one that leaves a case open, contradicts itself or has a rule that
+ * never applies is refused and the case named. A warning names what of it lies beyond `pan-min` and `pan-max`, and rules for
+ * another number of sensors than the PIR pads have; another one, poses that come from another head than `head` only.
  *
  * ## Example
  * |[

@@ -38,11 +38,12 @@ const Property<Settings> kTable[] = {
         "0 = at once. rules=paper has none"),
     property(
         "hold-stopped", &Settings::hold_stopped,
-        "Nanoseconds for which a followed track that stopped is kept as the target at least; 0 = not at all"),
+        "Nanoseconds for which a followed track that stopped is kept as the target at least; 0 = not at all. "
+        "rules=paper has none"),
     property(
         "camera-hold", &Settings::camera_hold,
         "Nanoseconds for which the camera counts as having found a person after the last track; 0 = only "
-        "while there is one"),
+        "while there is one. rules=paper has none"),
     property("hysteresis", &Settings::hysteresis, 0, 90,
              "Degrees by which pan must leave a sector or a band of angles before it counts as outside; 0 = "
              "edges are sharp. rules=paper has none"),
@@ -90,9 +91,9 @@ fusion::FuserOptions fuser_options(const Settings& s, bool own_table) {
   if (paper) options = fusion::paper_options();
   options.rules = paper || own_table ? fusion::RuleSet::table : fusion::RuleSet::complete;
   options.choice = static_cast<fusion::TargetChoice>(s.target);
-  options.camera_hold = time_of(s.camera_hold);
-  options.hold_stopped = time_of(s.hold_stopped);
   if (!paper) {
+    options.camera_hold = time_of(s.camera_hold);
+    options.hold_stopped = time_of(s.hold_stopped);
     options.return_delay = time_of(s.return_delay);
     options.hysteresis = sensing::radians(s.hysteresis);
   }

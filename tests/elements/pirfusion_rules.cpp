@@ -80,7 +80,7 @@ action = "hold"
 
 // The pan angles of the issue, for all 16 states of camera and sensors: 416 cells.
 GST_START_TEST(the_papers_table_holds_through_the_element) {
-  Rig rig(true, "rules=paper camera-hold=0 hold-stopped=0");
+  Rig rig(true, "rules=paper");
   rig.add_pir();
   std::vector<double> angles = {-170, 170};
   for (const double edge : {-120, -90, -60, -45, 0, 45, 60, 120})

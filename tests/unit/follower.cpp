@@ -116,8 +116,27 @@ START_TEST(a_track_that_moves_in_between_has_another_half_minute) {
 }
 END_TEST
 
+START_TEST(the_paper_waits_for_nobody) {
+  Stream stream(paper_options());
+  stream.tracks = {person(7)};
+  const Decision& decision = stream.frame();
+  ck_assert(decision.action == Action::track);
+  stream.tracks.clear();
+  stream.frame();
+  ck_assert(decision.action == Action::zero && decision.rule == 7 && !decision.camera_found);
+  stream.tracks = {person(8)};
+  stream.frame();
+  ck_assert(decision.action == Action::track);
+  stream.tracks = {person(8, TrackState::stopped)};
+  stream.frames(1s);
+  ck_assert(decision.action == Action::zero && decision.rule == 7);
+}
+END_TEST
+
 START_TEST(rule_7_waits_for_a_stopped_person_even_when_the_track_is_gone) {
-  for (const FuserOptions& options : {FuserOptions{}, paper_options()}) {
+  FuserOptions table = paper_options();
+  table.hold_stopped = FuserOptions{}.hold_stopped;
+  for (const FuserOptions& options : {FuserOptions{}, table}) {
     Stream stream(options);
     stream.tracks = {person(7)};
     const Decision& decision = stream.frame();
@@ -146,6 +165,6 @@ int main() {
        a_target_is_chosen_by_nearness_size_or_newness, without_distances_the_lowest_feet_are_the_nearest,
        a_seen_track_precedes_a_stopped_one_and_a_coasted_one,
        a_stopped_track_is_followed_for_half_a_minute_and_then_left,
-       a_track_that_moves_in_between_has_another_half_minute,
+       a_track_that_moves_in_between_has_another_half_minute, the_paper_waits_for_nobody,
        rule_7_waits_for_a_stopped_person_even_when_the_track_is_gone});
 }
