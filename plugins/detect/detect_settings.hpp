@@ -192,7 +192,7 @@ inline constexpr auto kDetectProperties =
     joined(kOwnOfCamera, kOwnOfDifferences, kOwnOfThreshold, kOwnOfRegions, kOwnOfTracks, kMount,
            std::array{property("preset", &DetectSettings::preset, preset_type,
                                "What the properties that are not set one by one are set to: people "
-                               "(default), the literal method (paper) or vehicles (traffic)")});
+                               "(default), the paper's method (paper) or vehicles (traffic)")});
 
 // The same in lib's words. analysis_width: pixels.
 vision::DetectorOptions detector_options(const DetectSettings& settings, int analysis_width);

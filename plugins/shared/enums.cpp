@@ -78,7 +78,7 @@ GType keep_planes_type() {
 GType preset_type() {
   static const GEnumValue values[] = {
       {PRESET_DEFAULT, "Best masks and boxes for people, from a camera that may turn", "default"},
-      {PRESET_PAPER, "The literal method: three frames, threshold by fuzziness alone", "paper"},
+      {PRESET_PAPER, "The paper's method: three frames, threshold by fuzziness alone", "paper"},
       {PRESET_TRAFFIC, "Vehicles: no human gate, no person heights", "traffic"},
       {0, nullptr, nullptr}};
   static const GType type = register_enum("CerberusPreset", values);

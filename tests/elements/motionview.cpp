@@ -257,7 +257,7 @@ static std::pair<double, double> curves_at(const Picture& p, int x) {
 // curves of other options cross elsewhere.
 GST_START_TEST(the_curves_are_those_of_the_options_that_were_used) {
   const std::string caps = scene::caps("GRAY8", 640, 480);
-  Harness harness = started("motiondetect preset=paper ! motionview stage=histogram", caps);
+  Harness harness = started("motiondetect preset=paper weighting=linear ! motionview stage=histogram", caps);
   scene::World world;
   world.width = 640;
   world.height = 480;

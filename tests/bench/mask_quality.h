@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// How right the masks of a detector are.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "sequences.h"
+
+namespace cerberus::bench {
+
+// Over all scored pixels of the sequence; nothing where it cannot be read. detector: elements of a launch line.
+Counts mask_quality(const Sequence& s, const std::filesystem::path& data, const std::string& detector);
+
+}  // namespace cerberus::bench
