@@ -249,19 +249,22 @@ class Writer {
     set("onvif", "horizontal-fov", number(camera_.horizontal_fov));
   }
 
+  // JPEGs of the page's size. In RGB from here on, which the JPEG encoder's line begins with.
+  void jpeg(const std::string& elements, const std::string& properties) {
+    add(" ! videoconvert ! videoscale ! video/x-raw,format=BGRx,width=[1," +
+        std::to_string(page_.picture_width) + "],pixel-aspect-ratio=1/1 ! " + elements);
+    add(publish::encoder_line(*publish::encoder_of("jpegenc"), 1, 1));
+    add(properties);
+  }
+
   void pictures() {
-    add(std::string("  found. ! queue name=picture-queue ") + kNewest +
-        " ! videoconvert ! videoscale ! video/x-raw,width=[1," + std::to_string(page_.picture_width) +
-        "],pixel-aspect-ratio=1/1 ! motionoverlay crosshair=true ! jpegenc name=jpeg quality=" +
-        std::to_string(page_.quality) +
-        " ! appsink name=picture sync=false async=false max-buffers=2 drop=true");
+    add(std::string("  found. ! queue name=picture-queue ") + kNewest);
+    jpeg("motionoverlay crosshair=true ! ", " name=jpeg quality=" + std::to_string(page_.quality));
+    add(" ! appsink name=picture sync=false async=false max-buffers=2 drop=true");
     // One stage's result, while the page shows it: only then the frames keep the record (keep-planes).
-    add(std::string("  found. ! queue name=stage-queue ") + kNewest +
-        " ! motionview name=stage ! videoconvert ! videoscale ! video/x-raw,width=[1," +
-        std::to_string(page_.picture_width) +
-        "],pixel-aspect-ratio=1/1 ! jpegenc ! appsink name=stage-picture sync=false async=false "
-        "max-buffers=2 "
-        "drop=true");
+    add(std::string("  found. ! queue name=stage-queue ") + kNewest + " ! motionview name=stage");
+    jpeg("", "");
+    add(" ! appsink name=stage-picture sync=false async=false max-buffers=2 drop=true");
     set("detect", "keep-planes", "never");
     add(std::string("  found. ! queue ") + kNewest +
         " ! motionjson ! appsink name=facts sync=false async=false max-buffers=2 drop=true");

@@ -13,6 +13,9 @@ namespace cerberus::plugin {
 namespace {
 
 constexpr GstClockTime kLongestEncoding = 5 * GST_SECOND;
+// The levels of a JPEG fill the full range: the steps of lib/publish/streams/encoders.list, which says why.
+constexpr const char* kToJpeg[] = {"video/x-raw,format=BGRx", "video/x-raw,format=I420,colorimetry=1:4:0:0",
+                                   "image/jpeg"};
 
 // A map of a frame for reading, while it lives.
 class MappedFrame {
@@ -137,11 +140,17 @@ GstSample* encode_jpeg(const record::Picture& picture, std::string& fault) {
   auto* sample = static_cast<GstSample*>(picture.get());
   if (gst_structure_has_name(gst_caps_get_structure(gst_sample_get_caps(sample), 0), "image/jpeg"))
     return gst_sample_ref(sample);
-  g_autoptr(GstCaps) caps = gst_caps_new_empty_simple("image/jpeg");
-  g_autoptr(GError) error = nullptr;
-  GstSample* jpeg = gst_video_convert_sample(sample, caps, kLongestEncoding, &error);
-  if (!jpeg) fault = error ? error->message : "the encoder failed";
-  return jpeg;
+  GstSample* converted = gst_sample_ref(sample);
+  for (const char* step : kToJpeg) {
+    g_autoptr(GstSample) before = converted;
+    g_autoptr(GstCaps) caps = gst_caps_from_string(step);
+    g_autoptr(GError) error = nullptr;
+    converted = gst_video_convert_sample(before, caps, kLongestEncoding, &error);
+    if (converted) continue;
+    fault = error ? error->message : "the encoder failed";
+    return nullptr;
+  }
+  return converted;
 }
 
 }  // namespace cerberus::plugin

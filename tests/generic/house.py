@@ -222,9 +222,13 @@ PARAMETER_SETS = re.search(r'rtph264pay config-interval=(\d+)',
                            (TOP / 'lib' / 'publish' / 'streams' / 'payloaders.cpp').read_text('utf-8'))[1]
 
 
-# An encoder of our own lines gets what it can take: encoders.h says why. What a decoder of H.264 gives is even already.
+# An encoder of our own lines gets what it can take: encoders.h says why, and encoders.list for JPEG. What a decoder of
+# H.264 gives has even sizes already.
 BEFORE_ENCODER = re.search(r'kBeforeEncoder =\s*"([^"]*)"',
                            (TOP / 'lib' / 'publish' / 'streams' / 'encoders.h').read_text('utf-8'))[1]
+
+BEFORE_JPEG = re.search(r'gstreamer1.0-plugins-good +(.* ! )jpegenc\n',
+                        (TOP / 'lib' / 'publish' / 'streams' / 'encoders.list').read_text('utf-8'))[1]
 
 
 def check_encoders(path):
@@ -234,6 +238,8 @@ def check_encoders(path):
         found = re.findall(r'(.{0,200})! (?:\$\{ENCODER\}|(?!jpegenc)\w+enc\b)', text)
         if not all(before.endswith(BEFORE_ENCODER + ' ') for before in found):
             complain(path, f'an encoder without "{BEFORE_ENCODER}" in front')
+        if not all(before.endswith(BEFORE_JPEG) for before in re.findall(r'(.{0,200})jpegenc\b', text)):
+            complain(path, f'jpegenc without "{BEFORE_JPEG}" in front')
 
 
 def check_commands():

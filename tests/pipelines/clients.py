@@ -3,13 +3,14 @@
 """Whether others read what is served and written: ffmpeg and GStreamer read every stream and file, and each picture is
 compared with the one that went into the encoder.
 
-    clients.py files|rtsp|rtp|mjpeg|cerberusd PICTURES [PROGRAM]
+    clients.py files|odd|levels|rtsp|rtp|mjpeg|cerberusd PICTURES [PROGRAM]
 
 PICTURES makes numbered pictures and compares them (pictures.cpp). The clients of a stream watch at the same time. Without
 ffmpeg GStreamer reads alone, and it is said. PROGRAM is cerberus-rtsp or cerberusd.
 """
 import os
 import pathlib
+import re
 import shutil
 import signal
 import socket
@@ -18,6 +19,7 @@ import sys
 import tempfile
 import time
 
+from page_client import Page, Socket
 from rtsp_client import Rtsp
 from support import LIMIT, TOP, gst_launch, must, run
 
@@ -223,9 +225,10 @@ def test_mjpeg():
     stop(sender)
 
 
-def read_file(readers, name, path, before, least):
+def read_file(readers, name, path, before, least, is_jpeg=False):
     readers.ffmpeg(name, before, least, '-i', path)
-    readers.gstreamer(name, before, least, f'filesrc location={path} ! decodebin')
+    convert = f' ! {LIMITED}' if is_jpeg else ''
+    readers.gstreamer(name, before, least, f'filesrc location={path} ! decodebin{convert}')
 
 
 def recording(folder):
@@ -261,7 +264,7 @@ def test_files():
 
 
 def test_odd(program):
-    """No encoder of H.264 takes an odd width or height: the last column or row is scaled away, and nothing else changes."""
+    """H.264 has no odd width or height: the last column or row is scaled away, and nothing else changes."""
     few = 50
     for width, height in ((641, 481), (984, 737)):
         even = width // 2 * 2, height // 2 * 2
@@ -285,7 +288,8 @@ def test_odd(program):
         wait_until(lambda: sum(path.stat().st_size for path in pathlib.Path(folder).rglob('*.mp4')) > 10000, server)
         os.killpg(server.pid, signal.SIGTERM)
         ended(server)
-        readers.gstreamer(f'{width}x{height}, cerberusd', 'even.raw', 1, f'filesrc location={recording(folder)} ! decodebin')
+        readers.gstreamer(f'{width}x{height}, cerberusd', 'even.raw', 1,
+                          f'filesrc location={recording(folder)} ! decodebin')
         readers.compare()
 
 
@@ -304,6 +308,65 @@ file = "FILE"
 folder = "FOLDER"
 encoder = "RECORDED"
 """
+
+
+LEVELS = {16: 0, 126: 128, 235: 255}  # black, grey and white, in the range of video, and what an RGB picture shows
+
+
+def check_levels(name, jpeg):
+    """Three bands in a JPEG have their levels, by ffmpeg."""
+    pathlib.Path('bands.jpg').write_bytes(jpeg)
+    must(run('ffmpeg -nostdin -y -v error -i bands.jpg -f rawvideo -pix_fmt rgb24 bands.rgb'))
+    line = pathlib.Path('bands.rgb').read_bytes()[3 * WIDTH * HEIGHT // 4:]
+    for band, level in enumerate(LEVELS.values()):
+        at = 3 * (WIDTH * (2 * band + 1) // 6)
+        print(f'{name}: {level} is {list(line[at:at + 3])}')
+        assert all(abs(each - level) <= 3 for each in line[at:at + 3]), f'{name}: a level of {level} is wrong'
+
+
+def first_jpeg(data):
+    start_of, end_of = data.index(b'\xff\xd8'), data.index(b'\xff\xd9')
+    return data[start_of:end_of + 2]
+
+
+def test_levels(program):
+    """JPEGs are as black and as white as the video, which has another range: of pipelines/encoder, MJPEG, the page."""
+    if not shutil.which('ffmpeg'):
+        sys.exit(77)
+    row = b''.join(bytes([level]) * (WIDTH * (band + 1) // 3 - WIDTH * band // 3) for band, level in enumerate(LEVELS))
+    pathlib.Path('bands.raw').write_bytes((row * HEIGHT + b'\x80' * (WIDTH * HEIGHT // 2)) * 500)
+    must(gst_launch(f'filesrc location=bands.raw ! rawvideoparse width={WIDTH} height={HEIGHT} format=i420 '
+                    'framerate=10/1 ! matroskamux ! filesink location=bands.mkv'))
+    source = 'filesrc location=bands.mkv ! decodebin'
+    must(gst_launch(f'{source} ! {encoder("jpeg")} ! filesink location=encoded.jpg'))
+    check_levels('ENCODER=jpeg', first_jpeg(pathlib.Path('encoded.jpg').read_bytes()))
+    port = free_port()
+    sender = launch_file('mjpeg', SOURCE=f'{source} ! clocksync', PORT=port)
+    wait_until(lambda: is_open(port), sender)
+    with socket.create_connection(('127.0.0.1', port)) as line:
+        data = b''
+        while b'\xff\xd9' not in data:
+            data += line.recv(65536)
+    check_levels('MJPEG', first_jpeg(data))
+    stop(sender)
+    port = free_port()
+    pathlib.Path('robot.toml').write_text(f'state-folder = "state"\n[page]\nport = {port}\n[[camera]]\n'
+                                          'name = "yard"\nkind = "file"\nfile = "bands.mkv"\n', 'ascii')
+    server = start([program, 'robot.toml'])
+    line = server.stdout.readline()
+    while 'One-time password' not in line:
+        line = server.stdout.readline()
+        assert line, 'no password'
+    page = Page(port)
+    assert page.log_in('owner', re.search(r'([0-9a-f]{16})\n', line)[1]) == 200
+    assert page.ask('POST', '/password', {'user': 'owner', 'password': 'long enough'})[0] == 200
+    pictures_of_page = Socket(page)
+    message = pictures_of_page.receive()
+    while not isinstance(message, tuple):
+        message = pictures_of_page.receive()
+    check_levels('page', message[2])
+    os.killpg(server.pid, signal.SIGTERM)
+    server.communicate(timeout=LIMIT)
 
 
 def robot(file, port, folder, recorded, shown):
@@ -330,7 +393,7 @@ def test_cerberusd(program):
         os.killpg(server.pid, signal.SIGTERM)
         ended(server)
         readers = Readers()
-        read_file(readers, f'recording, {recorded}', recording(folder), 'scene.raw', NEEDED)
+        read_file(readers, f'recording, {recorded}', recording(folder), 'scene.raw', NEEDED, recorded == 'jpegenc')
         readers.compare()
 
 
