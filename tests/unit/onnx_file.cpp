@@ -48,6 +48,11 @@ START_TEST(the_input_size_of_an_onnx_model_is_read_from_its_file) {
   for (const auto& shape : std::vector<std::vector<int>>{
            {1, 3, 0, 0}, {1, 4, 64, 64}, {1, 3, 64}, {2, 3, 64, 64}, {1, 3, 9000, 64}})
     ck_assert(!size_in(with_input(shape)));
+  std::string newer = good;  // begins with the IR version
+  newer[1] = 13;
+  ck_assert(size_in(newer) == Size(64, 64));
+  newer[1] = 2;
+  ck_assert(!size_in(newer));
   for (const char* text : {"", "not a model", "\x08", "\x3a\xff\xff\xff\xff\x7f"}) ck_assert(!size_in(text));
   for (std::size_t n = 0; n < good.size(); n += 7) size_in(good.substr(0, n));  // reads nothing beyond
 }

@@ -195,6 +195,8 @@ std::optional<Buffer> full_factors(Bytes tensor, const std::vector<std::uint64_t
 
 std::optional<Size> onnx_input_size(Bytes model) {
   constexpr std::uint64_t kLargest = 8192;
+  constexpr std::uint64_t kOldestVersion = 3,
+                          kNoVersion = 100;  // the fields that are read are the same in all
   Bytes graph;
   std::uint64_t version = 0;
   Message reader(model);
@@ -202,7 +204,7 @@ std::optional<Size> onnx_input_size(Bytes model) {
     if (field->number == kModelVersion) version = field->value;
     if (field->number == kModelGraph) graph = field->bytes;
   }
-  if (reader.is_broken() || version < 3 || version > 10) return std::nullopt;
+  if (reader.is_broken() || version < kOldestVersion || version >= kNoVersion) return std::nullopt;
   Message inputs(graph);
   while (const auto input = inputs.next()) {
     if (input->number != kGraphInput) continue;
