@@ -57,7 +57,8 @@ class Writer {
     if (recorder_) recorder();
     source();
     add(" ! videoconvert");
-    if (has_file) add(" ! identity sync=true");
+    // A telephone's video says how it was held.
+    if (has_file) add(" ! videoflip video-direction=auto ! identity sync=true");
     if (source_.kind == SourceKind::world) window();
     add(" ! motiondetect name=detect ! pirfusion name=fusion");
     if (mqtt_ != nullptr) publish();

@@ -242,6 +242,16 @@ def check_encoders(path):
             complain(path, f'jpegenc without "{BEFORE_JPEG}" in front')
 
 
+# A video of a telephone may lie on its side and say so. Network cameras do not turn their pictures.
+def check_upright(path):
+    lines = path.read_text('utf-8', errors='replace') if path.suffix in {'.launch', '.md', '.cpp'} else ''
+    for line in [lines] if path.suffix == '.launch' else re.findall('.*location=walk.mp4.*', lines):
+        text = re.sub(r'\s+', ' ', re.sub('^#.*', '', line, flags=re.M))
+        first = re.search(r'(\S+ \S+ )! (?:motiondetect|virtualptz)', text)
+        if first and first[1] != 'videoflip video-direction=auto ' and path.name != 'record-streams.launch':
+            complain(path, 'no "videoflip video-direction=auto" in front of what detects')
+
+
 def check_commands():
     explained = ('pipelines/demo', 'pipelines/encoder', 'pipelines/rtsp', 'pipelines/run', 'pipelines/setup', 'tests/run')
     for command in (*explained, 'docs/generate'):
@@ -305,11 +315,13 @@ for each in files():
     check_launch_file(each)
     check_payloaders(each)
     check_encoders(each)
+    check_upright(each)
     check_links(each)
     check_named_pages(each)
     check_json(each)
 for each in TOP.glob('*.md'):
     check_links(each)
+    check_upright(each)
 check_shared()
 check_folder_sizes()
 check_commands()

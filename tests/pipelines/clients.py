@@ -3,7 +3,7 @@
 """Whether others read what is served and written: ffmpeg and GStreamer read every stream and file, and each picture is
 compared with the one that went into the encoder.
 
-    clients.py files|odd|levels|rtsp|rtp|mjpeg|cerberusd PICTURES [PROGRAM]
+    clients.py files|odd|turned|levels|rtsp|rtp|mjpeg|cerberusd PICTURES [PROGRAM]
 
 PICTURES makes numbered pictures and compares them (pictures.cpp). The clients of a stream watch at the same time. Without
 ffmpeg GStreamer reads alone, and it is said. PROGRAM is cerberus-rtsp or cerberusd.
@@ -14,6 +14,7 @@ import re
 import shutil
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -308,6 +309,41 @@ file = "FILE"
 folder = "FOLDER"
 encoder = "RECORDED"
 """
+
+
+def turn(path):
+    """Writes into an MP4 of one track that it is shown a quarter turn clockwise (ISO/IEC 14496-12, 8.3.2), as
+    telephones do."""
+    data = bytearray(pathlib.Path(path).read_bytes())
+    at = data.index(b'tkhd') + 44  # version 0: the matrix is behind 40 bytes
+    data[at:at + 36] = struct.pack('>9i', 0, 0x10000, 0, -0x10000, 0, 0, WIDTH << 16, 0, 0x40000000)
+    pathlib.Path(path).write_bytes(data)
+
+
+def test_turned(program):
+    """A video of a telephone that was held upright is shown upright, whatever it is read for."""
+    whole = pictures(SOME)
+    must(gst_launch(f'{whole} ! videoconvert ! videoflip video-direction=90l ! x264enc ! mp4mux ! '
+                    'filesink location=phone.mp4'))
+    turn('phone.mp4')
+    source = 'filesrc location=phone.mp4 ! decodebin'
+    must(gst_launch(f'{source} ! videoconvert ! videoflip video-direction=90r ! motiondetect ! motionoverlay ! {I420} ! '
+                    'filesink location=drawn.raw'))
+    readers = Readers()
+    os.mkdir('recordings')
+    ended(launch_file('record', SOURCE=source, FOLDER='recordings', JSON=os.devnull, ENCODER=encoder('x264')))
+    read_file(readers, 'record, turned', recording('recordings'), 'scene.raw', SOME)
+    ended(launch_file('annotate', SOURCE=source))
+    read_file(readers, 'annotate, turned', 'annotated.mp4', 'drawn.raw', SOME)
+    ended(launch_file('live', SOURCE=source, SINK=f'{I420} ! filesink location=live.raw'))
+    must(run([PICTURES, 'compare', WIDTH, HEIGHT, 'drawn.raw', 'live.raw', 1]))
+    pathlib.Path('robot.toml').write_text(robot('phone.mp4', free_port(), 'yard', 'x264enc', 'x264enc'), 'ascii')
+    server = start([program, 'robot.toml'])
+    wait_until(lambda: sum(path.stat().st_size for path in pathlib.Path('yard').rglob('*.mp4')) > 10000, server)
+    os.killpg(server.pid, signal.SIGTERM)
+    ended(server)
+    read_file(readers, 'cerberusd, turned', recording('yard'), 'scene.raw', 1)
+    readers.compare()
 
 
 LEVELS = {16: 0, 126: 128, 235: 255}  # black, grey and white, in the range of video, and what an RGB picture shows
