@@ -239,6 +239,13 @@ void HeadController::watch_emergency(Time head, DeferredNotifications& out) {
   report_manual(head, out);
 }
 
+void HeadController::watch_reports() {
+  if (!runner_ || !runner_->parted()) return;
+  homing_ = false;
+  law_.reset();
+  manual_.wait("its reports contradicted its commands: it waits for an order");
+}
+
 void HeadController::report_fault(const std::string& failure, Time head, DeferredNotifications& out) {
   if (failure.empty()) return;
   const bool known = std::exchange(faulty_, true);
@@ -321,6 +328,7 @@ HeadController::Answer HeadController::frame(const Frame& frame, DeferredNotific
   if (clock_driven_) {
     newest_ = frame.running;
     const Time now = head_time(frame.now);
+    watch_reports();
     end_expired_order(now, out);
     if (!frame.seen || halted_) return Answer::done;
     watchdog_.feed(now);
@@ -376,6 +384,7 @@ HeadController::Answer HeadController::frame(const Frame& frame, DeferredNotific
 
 void HeadController::on_decision(const FusionDecision& decision, Time at, DeferredNotifications& out) {
   const std::lock_guard guard(lock_);
+  watch_reports();
   // Only frames feed the watchdog: without them no decision moves the head.
   if (!runner_ || !clock_driven_ || halted_ || homing_ || manual_.active() || !watchdog_.alive()) return;
   if (!decision.decided || *decision.decided > at + kEarly || *decision.decided < at - kStale) return;
@@ -416,6 +425,7 @@ HeadController::Time HeadController::tick(Time at, DeferredNotifications& out) {
   }
   if (answer != Answer::interrupted) check(runner->failure(), now, out);
   watch_emergency(now, out);
+  watch_reports();
   if (poses.empty()) return at + kWhileMoving;
   late_since_ = motion::kNever;
   remember(poses);

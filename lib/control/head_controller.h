@@ -115,6 +115,8 @@ class HeadController {
   void on_timeout(Time head, DeferredNotifications& out);
   void apply_manual(std::optional<Time> now, DeferredNotifications& out);
   void watch_emergency(Time head, DeferredNotifications& out);
+  // After reports that contradict the commands no decision moves the head: it waits for an order.
+  void watch_reports();
   void end_manual(const char* reason, std::optional<Time> now, DeferredNotifications& out);
   motion::Pose running(motion::Pose pose) const;
 

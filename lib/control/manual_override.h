@@ -38,6 +38,10 @@ class ManualOverride {
   void stop() {
     if (!emergency_) set("manual command: stop", kStop);
   }
+  // The head stays where it is until the next command, or the end of the override.
+  void wait(const char* reason) {
+    if (!emergency_) set(reason, kStop);
+  }
   // The emergency stop was pressed or released.
   void emergency(bool pressed);
   // Replaces an expired command: the head stays at rest, and no decision moves it.

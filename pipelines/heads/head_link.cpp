@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <limits>
 #include <thread>
 #include <utility>
 
@@ -16,6 +17,8 @@ namespace cerberus::heads {
 using namespace drivers;
 
 namespace {
+
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 Time now_is() {
   return std::chrono::duration_cast<Time>(std::chrono::steady_clock::now().time_since_epoch());
@@ -80,6 +83,7 @@ std::string HeadLink::read(int milliseconds) {
   lines_.append(bytes);
   while (const auto text = lines_.take()) {
     const auto line = parse_helper_line(*text);
+    if (!line && text->starts_with("pose ")) pose = {{kNoNumber, 0, 0}, {kNoNumber, 0, 0}, 0};
     if (!line) continue;
     watch_.take(*line);
     if (const auto* came = std::get_if<ReadyLine>(&*line)) {

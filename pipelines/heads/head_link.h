@@ -35,7 +35,7 @@ class HeadLink {
   std::string finish();
 
   const drivers::HeadAbilities& abilities() const { return abilities_; }
-  // Once: where the head reported to be.
+  // Once: where the head reported to be; NaN: its line has no numbers.
   std::optional<drivers::PoseLine> pose;
 
  private:

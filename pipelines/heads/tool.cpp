@@ -10,7 +10,9 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <utility>
 
+#include "control/move_check.h"
 #include "drivers/helper/option_words.h"
 #include "heads/head_link.h"
 #include "sensing/angles.h"
@@ -66,13 +68,22 @@ int move_head(const ToolOptions& options) {
   Keys keys;
   if (wrong.empty() && !link.abilities().velocity) wrong = "the head does not turn at speeds";
   if (wrong.empty()) link.turn(sensing::radians(options.pan), sensing::radians(options.tilt));
+  control::MoveCheck check(options.setup.limits,
+                           {sensing::radians(options.pan), sensing::radians(options.tilt)},
+                           motion::seconds(options.setup.latency));
+  bool goes_on = true;
   for (const double end = now_seconds() + options.seconds;
-       wrong.empty() && now_seconds() < end && !keys.pressed();) {
+       wrong.empty() && goes_on && now_seconds() < end && !keys.pressed();) {
     wrong = link.serve(20);
-    if (link.pose)
-      std::printf("pan %.2f tilt %.2f\n", sensing::degrees(link.pose->pan.position),
-                  sensing::degrees(link.pose->tilt.position));
-    link.pose.reset();
+    const auto pose = std::exchange(link.pose, std::nullopt);
+    if (!pose || !wrong.empty()) continue;
+    std::printf("pan %.2f tilt %.2f\n", sensing::degrees(pose->pan.position),
+                sensing::degrees(pose->tilt.position));
+    const double time = now_seconds() - pose->age;
+    goes_on = check.add(motion::Time(static_cast<motion::Time::rep>(time * 1e9)),
+                        {pose->pan.position, pose->tilt.position});
+    wrong = check.fault();
+    if (!goes_on && wrong.empty()) std::printf("stopped at the limits\n");
   }
   if (const std::string end = link.finish(); wrong.empty()) wrong = end;
   if (!wrong.empty()) std::fprintf(stderr, "cerberus-heads: %s\n", wrong.c_str());

@@ -52,7 +52,9 @@
  * `holding`, `manual`, `limited`, `fault`, `homing`) and `reason` at every change of either.
  *
  * The pose of a real head that reports none is reckoned from its commands and corrected by the camera motion on the
- * frames (`motiondetect`, `cameramotion`); a head that has lost its reference looks for it (`homing`).
+ * frames (`motiondetect`, `cameramotion`); a head that has lost its reference looks for it (`homing`). One whose reports
+ * contradict its commands for a second is stopped, with a warning and the state `fault`, and stands until `auto` or the
+ * next signal that moves it. A helper process that hangs is killed and started again, which stops the head.
  *
  * Action signals override the decisions until `auto` gives them back: `move-to` and `move-by` (pan, tilt in degrees;
  * false if the head is not there, the stream is over, or a number is none), `turn` (degrees a second; a stop after 500 ms

@@ -11,6 +11,7 @@ import select
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 
 from support import LIMIT, TOP, all_tests, run
@@ -89,6 +90,43 @@ def test_a_helper_that_hangs_is_killed_and_another_one_stops_the_head():
     assert re.search(r'helper `\S*python\S*` hangs: it has not answered `alive` for 0.5 s. It was killed, and another '
                      'one has stopped the head', terminal.said), terminal.said
     assert not os.path.exists(f'/proc/{helper}')
+
+
+# A head of numbers that turns for ten seconds at most, and reports what `says` makes of its angle.
+LIAR = """
+import os, select, sys, time
+print('ready 1 velocity feedback alive', flush=True)
+pan, speed, last, k = 0.0, 0.0, time.monotonic(), 0
+while True:
+    if select.select([0], [], [], .05)[0]:
+        for words in map(str.split, os.read(0, 4096).decode().splitlines() or sys.exit()):
+            if words[0] == 'alive':
+                print('alive', flush=True)
+            if words[0] in ('move', 'stop'):
+                speed = float(words[2]) if words[1:2] == ['at'] else 0.0
+    now = time.monotonic()
+    pan, last, k = pan + speed * (now - last), now, k + 1
+    open('FILE', 'w').write(str(pan))
+    print('pose', SAYS, '0 0 0 0', flush=True)
+"""
+
+
+def test_a_move_ends_at_the_limits_or_where_the_reports_part_from_it():
+    ends, parts = 'stopped at the limits', 'the head reports .* as pan, and its speed leads to '
+    with tempfile.TemporaryDirectory() as folder:
+        for says, speed, limit, text, most in (('pan', 10, 10, ends, 12), ('-pan', 10, 10, ends, 12),
+                                               ('pan', -10, 10, ends, 12), ('-pan', -10, 10, ends, 12),
+                                               ('-pan', 20, 90, parts, 40), ('0', 12, 90, parts, 45),
+                                               ('pan if k % 2 else 29', 2, 30, parts, 20), ("float('nan')", 10, 90, parts, 20)):
+            liar, angle = os.path.join(folder, 'liar.py'), os.path.join(folder, 'angle')
+            with open(liar, 'w', encoding='utf-8') as file:
+                file.write(LIAR.replace('FILE', angle).replace('SAYS', says))
+            status, said = run([TOOL, 'move', 'external', '--command', f'{sys.executable} {liar}', '--yes', '--seconds=12',
+                                f'--pan={speed}', f'--limits={-limit},{limit},-20,20'])
+            assert status == (1 if text == parts else 0) and re.search(text, said), (says, speed, said)
+            with open(angle, encoding='utf-8') as file:
+                turned = float(file.read())
+            assert 0 < turned * speed / abs(speed) < most, (says, speed, turned)
 
 
 def test_a_port_is_asked_if_it_is_named():

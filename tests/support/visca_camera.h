@@ -19,6 +19,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -108,6 +109,11 @@ class ViscaCamera {
   }
   // In the test's own time: as many stops are neither obeyed nor answered from now on.
   void swallow_stops(int stops) { faults_.swallows_stops = stops; }
+  // The degrees that it reports from now on for where its pan is; not finite: it does not answer.
+  void set_reported_pan(std::function<double(double)> reported) {
+    const std::lock_guard guard(lock_);
+    reported_pan_ = std::move(reported);
+  }
   // The next reset of the sequence number is lost.
   void drop_reset() { drops_resets_ = 1; }
   // While it has no power, what comes is lost, and it stands.
@@ -156,6 +162,10 @@ class ViscaCamera {
       if (moved && pan_.speed == 0) stopped_ = coming_.front().from;
     }
     turn_until(now);
+  }
+  double report(double pan) {
+    const std::lock_guard guard(lock_);
+    return reported_pan_ ? reported_pan_(pan) : pan;
   }
   bool has_come_home() {
     const std::lock_guard guard(lock_);
@@ -250,8 +260,10 @@ class ViscaCamera {
   void obey(const std::vector<std::uint8_t>& m) {
     if (m.size() == 5 && m[0] == to_me() && m[1] == 0x09 && m[2] == 0x06 && m[3] == 0x12) {
       if (!faults_.reports) return;
+      const double reported = report(pan());
+      if (!std::isfinite(reported)) return;
       std::vector<std::uint8_t> reply{0x90, 0x50};
-      for (const double angle : {pan(), tilt()}) {
+      for (const double angle : {reported, tilt()}) {
         const auto units = static_cast<std::uint16_t>(static_cast<std::int16_t>(std::lround(angle * 14.4)));
         for (int shift = 12; shift >= 0; shift -= 4)
           reply.push_back(static_cast<std::uint8_t>(units >> shift & 15));
@@ -326,6 +338,7 @@ class ViscaCamera {
   sockaddr_storage peer_{};
   socklen_t peer_size_ = 0;
   std::mutex lock_;
+  std::function<double(double)> reported_pan_;
   Axis pan_, tilt_;  // degrees, degrees a second
   std::deque<Drive> coming_;
   struct Late {

@@ -107,7 +107,9 @@ START_TEST(an_axis_with_positions_that_holds_does_not_creep_to_where_the_model_r
     ck_assert(rig.sent.back().line.starts_with("move hold at "));
   }
   ck_assert_double_eq_tol(degrees(rig.at(rig.now).pan.position), 15, 0.01);
-  for (int k = 0; k < 20; ++k) report(171);  // it was turned beyond its limit
+  setup.limits.pan.to = radians(10);  // it is beyond that
+  assert_text(rig.client.limit(rig.now, setup.limits), "");
+  rig.run(rig.now + 50ms);
   ck_assert_double_lt(Rig::speed_of(rig.sent.back().line), 0);
 }
 END_TEST
@@ -181,13 +183,116 @@ START_TEST(a_correction_leads_beyond_no_limit_unless_the_head_reports_that) {
 }
 END_TEST
 
+// The camera looks elsewhere when the pipeline begins, and is cut off while it turns.
+START_TEST(the_pose_goes_on_from_the_last_report_when_these_cease) {
+  HeadSetup setup;
+  setup.latency = 100ms;
+  Rig rig(setup, "ready 1 velocity feedback rate 20");
+  const auto report = [&](double pan) {
+    rig.client.handle("pose " + std::to_string(pan) + " 0 0 0 0", rig.now);
+    rig.run(rig.now + 50ms);
+  };
+  for (int k = 0; k < 3; ++k) report(-47);
+  ck_assert_double_eq_tol(degrees(rig.at(rig.now).pan.position), -47, 1e-6);
+  ck_assert(rig.at(rig.now).measured);
+  rig.command({rig.now, {Kind::velocity, radians(20), 0}, {}});
+  double pan = -47;
+  for (int k = 0; k < 40; ++k) report(pan += .9);  // 18 degrees a second
+  double last = degrees(rig.at(rig.now).pan.position);
+  ck_assert_double_eq_tol(last, pan + 1, 1.5);
+  for (int k = 0; k < 100; ++k) {  // and nothing more
+    rig.run(rig.now + 50ms);
+    const double now = degrees(rig.at(rig.now).pan.position);
+    ck_assert_double_ge(now, last);
+    ck_assert_double_le(now, last + 1.01);
+    last = now;
+  }
+  ck_assert(!rig.at(rig.now).measured);
+  // It stops at its limit by what the last reports left it at.
+  rig.run(rig.now + 20s);
+  ck_assert_double_eq_tol(degrees(rig.at(rig.now).pan.position), 170, 0.01);
+  assert_text(rig.sent.back().line, "move hold hold\n");
+}
+END_TEST
+
+// Of the kinds of tests/unit/report_watch.cpp: the head is stopped, refuses what comes, and obeys again by a new order that
+// was given after the fault was seen.
+START_TEST(reports_that_part_from_the_commands_stop_the_head_until_a_new_order) {
+  HeadSetup setup;
+  setup.latency = 150ms;
+  Rig rig(setup, "ready 1 velocity feedback rate 20");
+  const auto report = [&](const std::string& pan) {
+    rig.client.handle("pose " + pan + " 0 0 0 0", rig.now);
+    rig.run(rig.now + 50ms);
+  };
+  rig.command({0s, {Kind::velocity, radians(20), 0}, {}});
+  double reported = 0;
+  while (rig.client.fault_at_rest().empty() && rig.now < 10s) {
+    report(std::to_string(reported));
+    reported -= rig.speed_of(rig.sent.back().line) * .05;  // reversed
+  }
+  ck_assert(rig.now > 1500ms && rig.now < 3s);
+  const std::string fault = rig.client.fault_at_rest();
+  ck_assert_msg(fault.starts_with("the head reports -") &&
+                    fault.find("degrees of pan, and its commands lead to") != std::string::npos &&
+                    fault.find("It was stopped, and stands until the next order") != std::string::npos,
+                "%s", fault.c_str());
+  assert_text(rig.sent.back().line, "stop\n");
+  const HeadCommand again{rig.now, {Kind::velocity, radians(-20), 0}, {}};
+  assert_text(rig.client.accept(again), "");  // a decision that was made before
+  assert_text(rig.client.execute(rig.now), fault.c_str());
+  rig.run(rig.now + 1s);
+  assert_text(rig.sent.back().line, "stop\n");
+  ck_assert(rig.client.parted());
+  ck_assert(!rig.client.parted());
+  HeadCommand stop{rig.now, {}, {}, true};
+  assert_text(rig.client.accept(stop), "");
+  assert_text(rig.client.execute(rig.now), fault.c_str());
+  rig.command({rig.now, {Kind::velocity, radians(-20), 0}, {}});
+  assert_text(rig.client.fault_at_rest(), "");
+  rig.run(rig.now + 100ms);
+  ck_assert_double_lt(Rig::speed_of(rig.sent.back().line), -10);
+}
+END_TEST
+
+START_TEST(a_pose_that_is_no_number_is_a_fault_and_no_pose) {
+  Rig rig({}, "ready 1 velocity feedback rate 20");
+  rig.client.handle("pose 3 0 0 0 0", 0s);
+  for (; rig.client.fault_at_rest().empty() && rig.now < 10s; rig.run(rig.now + 50ms))
+    rig.client.handle("pose nan nan 0 0 0", rig.now);
+  ck_assert(rig.now > 900ms && rig.now < 1500ms);
+  ck_assert(rig.client.fault_at_rest().starts_with("the head reports no number as pan"));
+  ck_assert_double_eq_tol(degrees(rig.at(rig.now).pan.position), 3, 1e-9);
+}
+END_TEST
+
+START_TEST(a_head_that_works_again_is_where_it_reports_to_be) {
+  Rig rig({}, "ready 1 velocity feedback rate 20");
+  const auto report = [&](double pan) {
+    rig.client.handle("pose " + std::to_string(pan) + " 0 0 0 0", rig.now);
+    rig.run(rig.now + 50ms);
+  };
+  for (int k = 0; k < 20; ++k) report(40);
+  rig.client.handle("fault no power", rig.now);
+  for (int k = 0; k < 60; ++k) report(40);
+  rig.client.handle("recovered", rig.now);
+  for (int k = 0; k < 60; ++k) report(0);  // it has found its home meanwhile
+  assert_text(rig.client.fault_at_rest(), "");
+  ck_assert_double_eq_tol(degrees(rig.at(rig.now).pan.position), 0, 1e-6);
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
-      "helper_client", {a_head_with_speed_commands_only_brakes_at_the_target,
-                        a_head_that_rests_is_sent_a_speed_with_the_command,
-                        an_axis_with_positions_that_holds_does_not_creep_to_where_the_model_rests,
-                        a_head_that_only_goes_to_angles_is_sent_the_end_of_each_period,
-                        limits_that_come_in_move_a_head_that_rests_beyond_them,
-                        the_speeds_that_a_helper_reports_are_reckoned_from_the_dead_time_on,
-                        a_correction_leads_beyond_no_limit_unless_the_head_reports_that});
+      "helper_client",
+      {a_head_with_speed_commands_only_brakes_at_the_target,
+       a_head_that_rests_is_sent_a_speed_with_the_command,
+       an_axis_with_positions_that_holds_does_not_creep_to_where_the_model_rests,
+       a_head_that_only_goes_to_angles_is_sent_the_end_of_each_period,
+       limits_that_come_in_move_a_head_that_rests_beyond_them,
+       the_pose_goes_on_from_the_last_report_when_these_cease,
+       reports_that_part_from_the_commands_stop_the_head_until_a_new_order,
+       a_pose_that_is_no_number_is_a_fault_and_no_pose, a_head_that_works_again_is_where_it_reports_to_be,
+       the_speeds_that_a_helper_reports_are_reckoned_from_the_dead_time_on,
+       a_correction_leads_beyond_no_limit_unless_the_head_reports_that});
 }

@@ -64,6 +64,9 @@ class Head {
   virtual std::string state(Time time, motion::Pose& pose) = 0;
   // True while the device's emergency stop is pressed, and once after it was pressed between two calls.
   virtual bool emergency() { return false; }
+  // True once after the head's reports have parted from its commands. It was stopped, and refuses all commands until this
+  // was called; the next command that moves it after that ends the fault.
+  virtual bool parted() { return false; }
   // What is wrong with the device now, also at rest, where no command would report it; empty: nothing. Not the emergency
   // stop.
   virtual std::string fault() { return {}; }

@@ -55,6 +55,7 @@ struct HeadRunner::Core {
   std::string unopened;          // used like the head: why it could not be opened
   std::string refusal;           // the same, not reported yet
   bool emergency = false;        // at the last request
+  bool parted = false;           // not reported yet
   bool asking = false;           // a call of ask() waits
   bool failed = false;           // the last batch
   bool question_failed = false;  // that of the last question, whose answer is in `poses`
@@ -129,9 +130,14 @@ void HeadRunner::Core::serve(std::unique_lock<std::mutex>& guard) {
   std::string wrong = carry_out(batch);
   if (wrong.empty() && batch.question && !batch.moves()) wrong = head->fault();
   const bool pressed = head->emergency();
+  const bool has_parted = head->parted();
   if (batch.quit) head->close();
   if (blocks) guard.lock();
   emergency = pressed;
+  if (has_parted) {
+    parted = true;
+    todo.command.reset();
+  }
   failed = !wrong.empty();
   if (failed) failure = wrong;
   const bool failed_to_open = failed && batch.open;
@@ -283,6 +289,11 @@ bool HeadRunner::healthy() const {
 bool HeadRunner::emergency() const {
   const std::lock_guard guard(core_->lock);
   return core_->emergency;
+}
+
+bool HeadRunner::parted() {
+  const std::lock_guard guard(core_->lock);
+  return std::exchange(core_->parted, false);
 }
 
 bool HeadRunner::idle() const {

@@ -65,6 +65,9 @@ class HeadRunner {
   bool healthy() const;
   // Returns whether the head's emergency stop was pressed at the last request.
   bool emergency() const;
+  // Returns, once, whether the head's reports have parted from its commands (Head::parted()). Commands that were given
+  // before that are not executed.
+  bool parted();
   // Returns false while a request is in progress.
   bool idle() const;
 

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "sensing/angles.h"
+#include "text/numbers.h"
+
 namespace cerberus::drivers {
 namespace {
 
@@ -17,7 +20,11 @@ struct Parameters {
   Time fresh =
       std::chrono::milliseconds(500);  // feedback older than this corrects nothing and measures no pose
   double correction_gain =
-      0.3;                     // share of the difference to a reported pose; derived: settles in ten reports
+      0.3;  // share of the difference to a reported pose; derived: settles in ten reports
+  // After the dead time, until a head that was to hold stands. chosen: as ReportWatch's grace.
+  Time settling = std::chrono::milliseconds(500);
+  double least_place =
+      sensing::radians(.1);    // from where the model is; chosen: the steps of encoders are finer
   double least_change = 1e-4;  // radians a second: slower changes of a speed are not sent
   // Radians a second for each radian between the model and the reckoned pose when a command takes effect. derived: a
   // step that is 20 % too fast at 20 degrees a second stays within 1.3 degrees.
@@ -26,6 +33,7 @@ struct Parameters {
   Time home_timeout = std::chrono::seconds(45);
 };
 constexpr Parameters kParameters;
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
@@ -52,7 +60,8 @@ void HelperClient::begin(Time now) {
   ready_ = pressed_ = reckons_ = false;
   fault_.clear();
   last_move_.clear();
-  pan_correction_ = tilt_correction_ = 0;
+  adopts_ = true;
+  pan_ = tilt_ = {};
   measured_.reset();
   homing_.reset();
   zoom_.reset();
@@ -140,9 +149,9 @@ void HelperClient::follow(Time now) {
                : AxisCommand{Kind::velocity, map.command_for(speed), 0};
   };
   const std::string line =
-      move_line(axis(last_.pan, ahead.pan, next.pan, error(ahead.pan, reckoned.pan, pan_correction_),
+      move_line(axis(last_.pan, ahead.pan, next.pan, error(ahead.pan, reckoned.pan, pan_.correction),
                      reported_.pan, setup_.limits.pan, setup_.pan_speeds),
-                axis(last_.tilt, ahead.tilt, next.tilt, error(ahead.tilt, reckoned.tilt, tilt_correction_),
+                axis(last_.tilt, ahead.tilt, next.tilt, error(ahead.tilt, reckoned.tilt, tilt_.correction),
                      reported_.tilt, setup_.limits.tilt, setup_.tilt_speeds));
   if (line != last_move_) send_(line);
   last_move_ = line;
@@ -158,7 +167,10 @@ void HelperClient::check_homing(Time now) {
 
 std::optional<HelperLine> HelperClient::handle(const std::string& text, Time now) {
   auto line = parse_helper_line(text);
-  if (line) take(*line, now);
+  if (line)
+    take(*line, now);
+  else if (text.starts_with("pose "))
+    take_pose({kNoNumber, kNoNumber}, now, now);
   return line;
 }
 
@@ -176,24 +188,16 @@ void HelperClient::take(const HelperLine& line, Time now) {
   } else if (std::get_if<RecoveredLine>(&line)) {
     fault_.clear();
     stand(now);
+    adopts_ = true;
   } else if (const auto* emergency = std::get_if<EmergencyLine>(&line)) {
     pressed_ = emergency->pressed;
     was_pressed_ = was_pressed_ || pressed_;
+    adopts_ = true;
   } else if (const auto* halted = std::get_if<StoppedLine>(&line)) {
     notice_ = "the helper stopped the head: " + halted->text;
     last_move_.clear();
   } else if (const auto* pose = std::get_if<PoseLine>(&line)) {
-    const Time at = now - Time(static_cast<Time::rep>(std::min(pose->age, 10.0) * 1e9));
-    measured_ = at;
-    reported_ = {pose->pan.position, pose->tilt.position};
-    if (reckons_) return reckoning_.place(at, {pose->pan.position, pose->tilt.position});
-    Pose expected;
-    if (!model_.state(at, expected).empty()) return;
-    const auto correct = [](double& correction, double difference) {
-      correction += kParameters.correction_gain * (difference - correction);
-    };
-    correct(pan_correction_, pose->pan.position - expected.pan.position);
-    correct(tilt_correction_, pose->tilt.position - expected.tilt.position);
+    take_pose(*pose, now);
   } else if (const auto* speeds = std::get_if<SpeedsLine>(&line)) {
     const Time at = now - Time(static_cast<Time::rep>(std::min(speeds->age, SpeedsLine::kMostAge) * 1e9)) +
                     setup_.latency;
@@ -212,8 +216,93 @@ void HelperClient::take(const HelperLine& line, Time now) {
   }
 }
 
+void HelperClient::take_pose(const PoseLine& pose, Time now) {
+  const Time at = now - Time(static_cast<Time::rep>(std::min(pose.age, 10.0) * 1e9));
+  take_pose({pose.pan.position, pose.tilt.position}, at, now);
+}
+
+// reported: NaN where the line has no numbers. Of a head that does not work, or whose motors are off, nothing is expected.
+void HelperClient::take_pose(const motion::PanTilt& reported, Time at, Time now) {
+  using Verdict = motion::ReportWatch::Verdict;
+  Pose model;
+  if (!parted_.empty() || !model_.state(at, model).empty()) return;
+  if (reckons_) model = reckoning_.at(at);
+  const bool works = fault_.empty() && !pressed_, number = std::isfinite(reported.pan);
+  adopts_ = adopts_ || !works;
+  if (!works && !number) return;
+  const motion::PanTilt here{motion::unwrapped(reported.pan, model.pan.position, setup_.limits.pan),
+                             motion::unwrapped(reported.tilt, model.tilt.position, setup_.limits.tilt)};
+  if (adopts_ && number) {
+    adopts_ = false;
+    pan_.watch.reset();
+    tilt_.watch.reset();
+    if (!reckons_) place(now, {here.pan - model.pan.position, here.tilt - model.tilt.position});
+    model.pan.position = here.pan;
+    model.tilt.position = here.tilt;
+  }
+  const double latency = motion::seconds(setup_.latency);
+  const auto judge = [&](Reports& axis, const char* name, double position, const AxisState& commanded) {
+    const Verdict verdict = axis.watch.add(at, position, commanded.position, commanded.speed, latency);
+    if (verdict == Verdict::parted) part(name, position, commanded.position, now);
+    return verdict == Verdict::plausible;
+  };
+  const bool pan = judge(pan_, "pan", here.pan, model.pan);
+  const bool tilt = parted_.empty() && judge(tilt_, "tilt", here.tilt, model.tilt);
+  if (!pan || !tilt) return;
+  measured_ = at;
+  reported_ = here;
+  if (reckons_) return reckoning_.place(at, here);
+  // Where it stands after a hold is where it was to stop, if it has followed so far.
+  const Time settled = now - setup_.latency - kParameters.settling;
+  const auto correct = [&](Reports& axis, const AxisCommand& command, const AxisState& commanded,
+                           double position) {
+    axis.correction += kParameters.correction_gain * (position - commanded.position - axis.correction);
+    if (commanded.speed != 0 || command.kind != Kind::hold) {
+      axis.moved = now;
+      axis.rested = false;
+    }
+    if (axis.rested || axis.moved > settled || !axis.watch.take_rest(position, commanded.position))
+      return 0.0;
+    axis.rested = true;
+    return position - commanded.position;
+  };
+  const motion::PanTilt by{correct(pan_, last_.pan, model.pan, here.pan),
+                           correct(tilt_, last_.tilt, model.tilt, here.tilt)};
+  place(now, by);
+}
+
+// The model is found to be `by` (radians) from where it is. Little of it is left to the corrections.
+void HelperClient::place(Time now, motion::PanTilt by) {
+  for (const auto& [way, axis] : {std::pair{&by.pan, &pan_}, {&by.tilt, &tilt_}}) {
+    if (std::abs(*way) >= kParameters.least_place)
+      axis->correction = 0;
+    else
+      *way = 0;
+  }
+  model_.place(now, by);
+  pan_.watch.shift(by.pan);
+  tilt_.watch.shift(by.tilt);
+}
+
+void HelperClient::part(const char* axis, double reported, double commanded, Time now) {
+  const auto degrees = [](double angle) { return text::rounded(sensing::degrees(angle), 1).string(); };
+  parted_ = std::string("the head reports ") +
+            (std::isfinite(reported) ? degrees(reported) + " degrees of " : "no number as ") + axis +
+            ", and its commands lead to " + degrees(commanded) +
+            " degrees. It was stopped, and stands until the next order by hand or auto. Check what blocks or "
+            "turns it, its limits, and the direction and unit of its reports";
+  parted_untold_ = true;
+  stand(now);
+  send_stop();
+}
+
 // A head that is at fault obeys nothing, neither now nor when it works again.
 std::string HelperClient::accept(const HeadCommand& command) {
+  const bool moves = command.pan.kind != Kind::hold || command.tilt.kind != Kind::hold;
+  if (moves && !parted_untold_ && !parted_.empty()) {
+    parted_.clear();
+    adopts_ = true;
+  }
   HeadCommand obeyed = command;
   if (!loss_.empty() || !why_idle().empty()) obeyed.pan = obeyed.tilt = {};
   if (std::string wrong = model_.command(obeyed); !wrong.empty()) return wrong;
@@ -224,6 +313,7 @@ std::string HelperClient::accept(const HeadCommand& command) {
 
 std::string HelperClient::why_idle() const {
   if (!fault_.empty()) return fault_;
+  if (!parted_.empty()) return parted_;
   return ready_ ? "" : "the head's helper has been started again and is not ready yet";
 }
 
@@ -272,7 +362,7 @@ std::string HelperClient::limit(Time now, const motion::Limits& limits) {
 
 std::string HelperClient::home(Time now) {
   if (!ready_ || !abilities_.home) return "the head has no way to find its reference";
-  if (!fault_.empty()) return fault_;
+  if (std::string wrong = why_idle(); !wrong.empty()) return wrong;
   const AxisCommand zero{Kind::position, 0, setup_.limits.pan.speed};
   if (std::string wrong = model_.command({now, zero, zero}); !wrong.empty()) return wrong;
   follows_ = false;
@@ -282,6 +372,8 @@ std::string HelperClient::home(Time now) {
 }
 
 Time HelperClient::serve(Time now) {
+  // Positions that have ceased: the limits hold where the last ones leave the head.
+  if (measured_ && !reckons_ && !is_fresh(now)) place(now, {pan_.correction, tilt_.correction});
   if (is_following()) follow(now);
   check_homing(now);
   return is_following() ? next_follow_ : motion::kNever;
@@ -292,15 +384,15 @@ std::string HelperClient::state(Time time, Pose& pose) {
   if (reckons_) pose = reckoning_.at(time);
   pose.field_of_view = field_of_view();
   pose.measured = is_fresh(time);
-  if (reckons_ || !pose.measured) return {};
+  if (reckons_ || !measured_) return {};
   // A correction that lags behind a head that brakes leads beyond no limit, unless the head is there.
   const auto correct = [](double position, double correction, double reported,
                           const motion::AxisLimits& limits) {
     return std::clamp(position + correction, std::min({limits.from, position, reported}),
                       std::max({limits.to, position, reported}));
   };
-  pose.pan.position = correct(pose.pan.position, pan_correction_, reported_.pan, setup_.limits.pan);
-  pose.tilt.position = correct(pose.tilt.position, tilt_correction_, reported_.tilt, setup_.limits.tilt);
+  pose.pan.position = correct(pose.pan.position, pan_.correction, reported_.pan, setup_.limits.pan);
+  pose.tilt.position = correct(pose.tilt.position, tilt_.correction, reported_.tilt, setup_.limits.tilt);
   return {};
 }
 

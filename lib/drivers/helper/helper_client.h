@@ -4,7 +4,10 @@
 // time. All times are running times.
 //
 // The pose is dead-reckoned: a model of the head (SimulatedHead) carries out the same commands with the same limits and
-// latency. Where the helper reports positions, the difference to the model at the time of the measurement corrects it.
+// latency. Where the helper reports positions, the difference to the model at the time of the measurement corrects it, and
+// the model begins at the first one; where they cease, or the head has come to rest after a hold, the model is placed where
+// they left it. Positions that part from the commands (motion/report_watch.h) are not believed: the head is stopped, and a
+// fault, until parted() was called and a command that moves it follows.
 // A helper without positions may report the speeds that its steps give; the pose is then their integral from
 // the time at which they take effect (motion/reckoning.h), and the head is made to follow the model.
 // A head that only turns at speeds is given the speeds of the model's motion, so it brakes before its limits; one that
@@ -20,6 +23,7 @@
 #include "drivers/helper/head_lines.h"
 #include "drivers/simulated/simulated_head.h"
 #include "motion/reckoning.h"
+#include "motion/report_watch.h"
 
 namespace cerberus::drivers {
 
@@ -49,6 +53,8 @@ class HelperClient {
 
   std::string state(Time time, motion::Pose& pose);
   bool emergency() { return std::exchange(was_pressed_, pressed_) || pressed_; }
+  // Once after the reports have parted from the commands.
+  bool parted() { return std::exchange(parted_untold_, false); }
   bool ready() const { return ready_; }
   const std::string& fault() const { return fault_; }
   // As Head::fault(): also while a new helper is not ready.
@@ -58,7 +64,19 @@ class HelperClient {
   const HeadSetup& setup() const { return setup_; }
 
  private:
+  // One axis of a head that reports positions.
+  struct Reports {
+    motion::ReportWatch watch;
+    double correction = 0;  // radians: what to add to the model
+    bool rested = false;    // it has come to rest since the last command that moves it, and was placed there
+    Time moved{};           // when the model moved last
+  };
+
   void take(const HelperLine& line, Time now);
+  void take_pose(const PoseLine& pose, Time now);
+  void take_pose(const motion::PanTilt& reported, Time at, Time now);
+  void place(Time now, motion::PanTilt by);
+  void part(const char* axis, double reported, double commanded, Time now);
   std::string why_idle() const;  // why no command is sent; empty: they are
   void send_command(Time now);
   void send_stop();
@@ -66,7 +84,7 @@ class HelperClient {
   void follow(Time now);
   void check_homing(Time now);
   double field_of_view() const;  // as in motion::Pose
-  bool is_following() const { return ready_ && follows_ && fault_.empty(); }
+  bool is_following() const { return ready_ && follows_ && fault_.empty() && parted_.empty(); }
   // Whether the last report is young enough to correct the model with.
   bool is_fresh(Time now) const;
   Time period() const { return Time(static_cast<Time::rep>(1e9 / abilities_.rate)); }
@@ -83,13 +101,16 @@ class HelperClient {
   HeadCommand last_;                            // of the caller
   std::string last_move_;                       // as sent
   Time next_follow_{};
-  double pan_correction_ = 0, tilt_correction_ = 0;  // radians: what to add to the model
-  std::optional<Time> measured_;                     // time of the last report
-  motion::PanTilt reported_;                         // its position
-  motion::Reckoning reckoning_;                      // of a head that reports speeds instead of positions
-  bool reckons_ = false;                             // it does
-  std::optional<double> zoom_;                       // position, as the helper reports it
-  std::optional<Time> homing_;                       // since when the head looks for its reference
+  Reports pan_, tilt_;
+  bool adopts_ = true;            // the next report is where the head is, whatever it was commanded
+  std::string parted_;            // how the reports have parted from the commands; empty: they have not
+  bool parted_untold_ = false;    // to parted()
+  std::optional<Time> measured_;  // time of the last report that was believed
+  motion::PanTilt reported_;      // its position
+  motion::Reckoning reckoning_;   // of a head that reports speeds instead of positions
+  bool reckons_ = false;          // it does
+  std::optional<double> zoom_;    // position, as the helper reports it
+  std::optional<Time> homing_;    // since when the head looks for its reference
 };
 
 }  // namespace cerberus::drivers

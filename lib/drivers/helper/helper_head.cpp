@@ -325,6 +325,12 @@ bool HelperHead::emergency() {
   return core_->client.emergency();
 }
 
+bool HelperHead::parted() {
+  if (!core_) return false;
+  const std::lock_guard guard(core_->lock);
+  return core_->client.parted();
+}
+
 std::string HelperHead::fault() {
   if (!core_ || !core_->open) return {};
   const std::lock_guard guard(core_->lock);

@@ -36,6 +36,7 @@ class HelperHead final : public Head {
   std::string home(Time now) override;
   std::string state(Time time, motion::Pose& pose) override;
   bool emergency() override;
+  bool parted() override;
   std::string fault() override;
 
  private:
