@@ -13,8 +13,8 @@
 #include "vision/duplicate_frames.h"
 #include "vision/geometry/box_edge.h"
 #include "vision/geometry/lens.h"
-#include "vision/image/luma.h"
-#include "vision/image/luma_stretch.h"
+#include "vision/image/luma/luma.h"
+#include "vision/image/luma/luma_stretch.h"
 #include "vision/zones/zones.h"
 
 namespace cerberus::vision {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "vision/image/luma.h"
+#include "vision/image/luma/luma.h"
 
 namespace cerberus {
 

@@ -82,7 +82,7 @@
 #include "shared/properties.hpp"
 #include "shared/video.hpp"
 #include "vision/frame_history.h"
-#include "vision/image/luma_stretch.h"
+#include "vision/image/luma/luma_stretch.h"
 #include "vision/verification/look_worker.h"
 #include "vision/verification/person_verifier.h"
 

@@ -20,7 +20,7 @@
 #include "support/data.h"
 #include "support/motions.h"
 #include "support/pictures.h"
-#include "vision/image/luma.h"
+#include "vision/image/luma/luma.h"
 
 using namespace cerberus;
 using namespace cerberus::vision;

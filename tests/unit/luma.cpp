@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The luma reduction against its exact scalar reference, and the reference against hand computation.
-#include "vision/image/luma.h"
+#include "vision/image/luma/luma.h"
 
 #include <check.h>
 

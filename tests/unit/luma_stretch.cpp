@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Pictures of words with values spread over a known part of their range: which part becomes black to white, and when it
 // moves.
-#include "vision/image/luma_stretch.h"
+#include "vision/image/luma/luma_stretch.h"
 
 #include <check.h>
 

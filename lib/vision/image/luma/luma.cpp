@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/image/luma.h"
+#include "vision/image/luma/luma.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "vision/image/luma_kernels.h"
+#include "vision/image/luma/luma_kernels.h"
 
 namespace cerberus::vision {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/image/luma_stretch.h"
+#include "vision/image/luma/luma_stretch.h"
 
 #include <algorithm>
 #include <cmath>

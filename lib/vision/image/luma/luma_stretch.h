@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "vision/image/luma.h"
+#include "vision/image/luma/luma.h"
 
 namespace cerberus::vision {
 

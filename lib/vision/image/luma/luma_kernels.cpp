@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/image/luma_kernels.h"
+#include "vision/image/luma/luma_kernels.h"
 
 #include <cstring>
 #include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "vision/image/luma_kernels.cpp"
+#define HWY_TARGET_INCLUDE "vision/image/luma/luma_kernels.cpp"
 #include <hwy/foreach_target.h>
 //
 #include <hwy/highway.h>
