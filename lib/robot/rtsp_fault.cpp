@@ -36,8 +36,8 @@ std::string of_streams(const SourceSettings& source, const std::vector<RtspStrea
   if (videos.empty())
     return "it sends no video" + (others.empty() ? "" : ", but " + others) +
            "; take the path of its video stream, which the camera's manual names";
-  const std::string text = "it sends " + videos + ", and \"codec\" is \"" + std::string(name_of(source.codec).key) +
-                           "\"; ";
+  const std::string text =
+      "it sends " + videos + ", and \"codec\" is \"" + std::string(name_of(source.codec).key) + "\"; ";
   return usable != nullptr ? text + "write codec = \"" + std::string(usable->key) + '"'
                            : text + "set the camera to H.264, H.265 or JPEG";
 }
@@ -54,7 +54,8 @@ std::string describe(RtspProblem problem, const SourceSettings& source, const st
   switch (problem) {
     case RtspProblem::refused:
       return where +
-             "the connection is refused; is RTSP switched on in the camera, and is this its port (554 without one)?";
+             "the connection is refused; is RTSP switched on in the camera, and is this its port (554 "
+             "without one)?";
     case RtspProblem::unknown_host:
       return where + "unknown host; check the name, or write the camera's address";
     case RtspProblem::unreachable:

@@ -124,6 +124,22 @@ void Camera::fail(const std::string& part, const std::string& text) {
   close();
 }
 
+void Camera::diagnose(GstObject* from, const GError* error, const gchar* debug) {
+  if (diagnosing_ || state_ != State::running) return;
+  g_autoptr(GstElement) recorded = element("recorded");
+  const bool second =
+      recorded && (from == GST_OBJECT(recorded) || gst_object_has_as_ancestor(from, GST_OBJECT(recorded)));
+  diagnosing_ = true;
+  // The answer may come after the camera, or for a pipeline that is no more.
+  (second ? offered_record_ : offered_)
+      .diagnose(settings_.source, second ? settings_.source.record_uri : settings_.source.uri, error, debug,
+                [holder = newest_, pipeline = pipeline_](const std::string& text) {
+                  Camera* camera = holder->camera;
+                  if (camera != nullptr && camera->diagnosing_ && camera->pipeline_ == pipeline)
+                    camera->fail("camera", text);
+                });
+}
+
 void Camera::on_report(const GstStructure* report) {
   if (gst_structure_has_name(report, "cerberus-command")) {
     const gchar* order = gst_structure_get_string(report, "name");
@@ -171,8 +187,13 @@ void Camera::on_message(GstMessage* message) {
   switch (GST_MESSAGE_TYPE(message)) {
     case GST_MESSAGE_ERROR: {
       g_autoptr(GError) error = nullptr;
-      gst_message_parse_error(message, &error, nullptr);
-      fail(part_of(GST_MESSAGE_SRC(message)), error->message);
+      g_autofree gchar* debug = nullptr;
+      gst_message_parse_error(message, &error, &debug);
+      const std::string part = part_of(GST_MESSAGE_SRC(message));
+      if (part == "camera" && settings_.source.kind == SourceKind::rtsp)
+        diagnose(GST_MESSAGE_SRC(message), error, debug);
+      else
+        fail(part, error->message);
       break;
     }
     case GST_MESSAGE_WARNING: {
@@ -272,6 +293,7 @@ void Camera::end() {
 }
 
 void Camera::close() {
+  diagnosing_ = false;
   if (pipeline_ == nullptr) return;
   state_ = State::closing;
   since_ = Clock::now();
@@ -328,7 +350,9 @@ void Camera::tick() {
   switch (state_) {
     case State::running: {
       if (now - last_frame_ > parameters_.stall) {
-        fail("camera", "no frame for " + seconds(parameters_.stall));
+        const bool network = settings_.source.kind == SourceKind::rtsp;
+        fail("camera",
+             (network ? settings_.source.uri + ": " : "") + "no frame for " + seconds(parameters_.stall));
         break;
       }
       const bool head = !parts_.head && head_backoff_.is_due(now);

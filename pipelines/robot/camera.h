@@ -17,6 +17,7 @@
 #include "robot/pipeline_text.h"
 #include "robot/settings.h"
 #include "rtsp_output.h"
+#include "rtsp_source.h"
 
 namespace cerberus::robot {
 
@@ -130,6 +131,7 @@ class Camera {
   void close();   // stops the pipeline, in another thread
   void closed();  // ... done
   void fail(const std::string& part, const std::string& text);
+  void diagnose(GstObject* from, const GError* error, const gchar* debug);  // of a network camera
   bool apply(const PipelineText& text, std::string& error);
   bool apply_secrets(std::string& error);
   bool change_live(const PipelineText& before, const PipelineText& after);
@@ -169,6 +171,8 @@ class Camera {
   std::string published_recording_;  // the last payload of the topic `recording`
   GstElement* pipeline_ = nullptr;
   GstElement *head_ = nullptr, *recorder_ = nullptr;
+  RtspSource offered_, offered_record_;  // by the camera, of "uri" and of "record-uri"
+  bool diagnosing_ = false;              // why the network camera failed; what follows is not said
   guint bus_watch_ = 0;
   std::atomic<guint64> frames_ = 0;
   guint64 counted_ = 0;

@@ -46,6 +46,14 @@ void Camera::drop_frames(const char* queue, std::atomic<bool>& pass) {
 }
 
 void Camera::connect() {
+  if (settings_.source.kind == SourceKind::rtsp) {
+    const std::pair<const char*, RtspSource*> sources[] = {{"source", &offered_},
+                                                           {"recorded", &offered_record_}};
+    for (const auto& [name, offered] : sources) {
+      g_autoptr(GstElement) source = element(name);
+      if (source) offered->watch(source, settings_.source.codec);
+    }
+  }
   drop_frames("picture-queue", draw_);
   drop_frames("stage-queue", draw_stage_);
   drop_frames("record-queue", record_);

@@ -45,8 +45,8 @@ struct Connection {
     g_autoptr(GError) error = nullptr;
     g_autoptr(GSocketConnection) made =
         g_socket_client_connect_to_uri_finish(G_SOCKET_CLIENT(client), result, &error);
-    self->done(describe(problem_of(error), self->source, self->uri, {},
-                        made ? self->detail : error->message));
+    self->done(
+        describe(problem_of(error), self->source, self->uri, {}, made ? self->detail : error->message));
   }
 };
 
