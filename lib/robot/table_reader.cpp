@@ -53,7 +53,9 @@ void TableReader::complain(const char* key, const std::string& text) {
 }
 
 bool TableReader::wrong(const char* key, const std::string& what) {
-  complain(key, std::string("\"") + key + "\" of " + where_ + " is " + what);
+  const TomlValue* is = table_.find(key);
+  complain(key, std::string("\"") + key + "\" of " + where_ + " is " + what +
+                    (is ? ", and not " + text::as_written(*is) : ""));
   return false;
 }
 

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <utility>
 
+#include "text/numbers.h"
+
 // toml++ checks some properties of its input by assertions (an abort) or, with NDEBUG, assumes them (undefined
 // behaviour), and some malformed files violate them: "[&", or "]" where a value belongs (marzer/tomlplusplus issues 294
 // and 301, in 3.3). A mistyped file must not end a process: here the assertions throw, like its other errors, and
@@ -158,6 +160,18 @@ TomlValue convert(const toml::node& node) {
   return value;
 }
 
+// A text as one short line of printable letters.
+std::string shown(std::string_view text) {
+  constexpr std::size_t kMost = 60;
+  const bool cut = text.size() > kMost;
+  std::size_t size = cut ? kMost : text.size();
+  while (cut && size > 0 && (static_cast<unsigned char>(text[size]) & 0xc0) == 0x80)
+    --size;  // a whole letter
+  std::string line(text.substr(0, size));
+  std::ranges::replace_if(line, [](char c) { return (c >= 0 && c < ' ') || c == 0x7f; }, '?');
+  return cut ? line + "..." : line;
+}
+
 // Letters that must be inserted, removed or replaced to make `b` of `a` (Levenshtein), for keys of up to 40 letters.
 std::size_t distance(std::string_view a, std::string_view b) {
   std::array<std::size_t, 41> row{};
@@ -182,6 +196,47 @@ const TomlValue* TomlValue::find(std::string_view key) const {
   return nullptr;
 }
 
+namespace {
+
+// With what stands in the line, which a description alone does not say.
+TomlMistake mistake_at(std::string_view text, std::uint32_t line, std::string what) {
+  std::string_view there = text;
+  for (std::uint32_t k = 1; k < line; ++k) {
+    const std::size_t end = there.find('\n');
+    there.remove_prefix(end == there.npos ? there.size() : end + 1);
+  }
+  there = there.substr(0, there.find('\n'));
+  const std::size_t begin = there.find_first_not_of(" \t\r"), end = there.find_last_not_of(" \t\r");
+  if (line == 0 || begin == there.npos) return {line, std::move(what)};
+  there = there.substr(begin, end + 1 - begin);
+  // What follows a key of such a name is nobody's business.
+  const std::size_t sign = there.find('=');
+  const bool secret =
+      std::ranges::any_of(std::array<std::string_view, 3>{"pass", "secret", "token"},
+                          [&](std::string_view word) { return there.find(word) != there.npos; });
+  if (secret && sign != there.npos)
+    return {line, what + "; the line begins with: " + shown(there.substr(0, sign))};
+  return {line, what + "; the line is: " + shown(there)};
+}
+
+// toml++ loses its place with some mistakes: the line is that of the shortest beginning in which it does so too.
+std::uint32_t line_where_lost(std::string_view encoded) {
+  constexpr std::uint32_t kMost = 1000;  // lines; each is parsed with all before it
+  std::size_t end = 0;
+  for (std::uint32_t line = 1; line <= kMost && end != encoded.npos; ++line) {
+    end = encoded.find('\n', end == 0 ? 0 : end + 1);
+    try {
+      static_cast<void>(toml::parse(encoded.substr(0, end)));
+    } catch (const ParserLost&) {
+      return line;
+    } catch (const std::exception&) {
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
 TomlFile parse_toml(std::string_view text) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // a byte order mark
   if (const toml::source_index line = line_of_wrong_byte(text); line != 0)
@@ -194,13 +249,37 @@ TomlFile parse_toml(std::string_view text) {
   } catch (const toml::parse_error& error) {
     const toml::source_position place = error.source().begin;
     if (foreign_letter(encoded, place))
-      return {std::nullopt, {place.line, "letters beyond ASCII stand in quotes or comments only"}};
-    return {std::nullopt, {place.line, decode(error.description())}};
+      return {std::nullopt,
+              mistake_at(text, place.line, "letters beyond ASCII stand in quotes or comments only")};
+    return {std::nullopt, mistake_at(text, place.line, decode(error.description()))};
   } catch (const ParserLost&) {
-    return {std::nullopt, {0, "this is not TOML: a value, a key or a bracket is missing or misplaced"}};
+    return {std::nullopt,
+            mistake_at(text, line_where_lost(encoded),
+                       "this is not TOML: a value, a key or a bracket is missing or misplaced")};
   } catch (const std::exception& error) {
     return {std::nullopt, {0, error.what()}};
   }
+}
+
+std::string as_written(const TomlValue& value) {
+  using Kind = TomlValue::Kind;
+  switch (value.kind) {
+    case Kind::boolean:
+      return value.boolean ? "true" : "false";
+    case Kind::integer:
+      return std::to_string(value.integer);
+    case Kind::number:
+      return significant(value.number, 10).string();
+    case Kind::text:
+      return '"' + shown(value.text) + '"';
+    case Kind::list:
+      return value.list.empty() ? "an empty list" : "a list";
+    case Kind::table:
+      return "a table";
+    case Kind::time:
+      break;
+  }
+  return "a time";
 }
 
 std::string_view nearest_key(std::string_view key, const std::vector<std::string_view>& known) {

@@ -50,6 +50,9 @@ struct TomlFile {
 
 TomlFile parse_toml(std::string_view text);
 
+// A value as a file has it, for a message: a list or a table by its kind, a long text in part.
+std::string as_written(const TomlValue& value);
+
 // The known key that `key` is most likely meant to be (at most two letters wrong); empty: none.
 std::string_view nearest_key(std::string_view key, const std::vector<std::string_view>& known);
 

@@ -115,7 +115,17 @@ START_TEST(every_mistake_is_reported_with_its_line) {
   } cases[] = {
       {"", "r.toml: there is no camera"},
       {"nam = \"x\"\n", "r.toml:1: unknown key \"nam\" in the file: is \"name\" meant?"},
-      {"name = 7\n", "r.toml:1: \"name\" of the file is a text in quotes"},
+      {"name = 7\n", "r.toml:1: \"name\" of the file is a text in quotes, and not 7"},
+      {"[page]\nport = 80a\n", "; the line is: port = 80a"},
+      {"[page]\nport = \"80\"\n", "a whole number from 1 to 65535, and not \"80\""},
+      {"[page]\nport = [80]\n", "a whole number from 1 to 65535, and not a list"},
+      {"[page]\nport = 8.5\n", "and not 8.5"},
+      {"name = \"a\"\n[page\nport = 80\n", "r.toml:2: "},
+      {"name = \"a\"\n[&\n",
+       "r.toml:2: this is not TOML: a value, a key or a bracket is missing or misplaced; the line is: [&"},
+      {"name = \"a\"\nport = ]\n", "r.toml:2: "},
+      {"[mqtt]\npassword = \"hunter2\n", "; the line begins with: password"},
+      {"[mode]\nstart = \"on\"\n", "and not \"on\""},
       {"name = \"a\\nb\"\n", "r.toml:1: \"name\" of the file is one line"},
       {"page = 3\n", "r.toml:1: \"page\" of the file is a table of its own"},
       {"camera = 3\n", "r.toml:1: \"camera\" of the file is a list of tables: [[camera]]"},
@@ -248,7 +258,7 @@ START_TEST(all_mistakes_come_at_once_in_the_order_of_their_lines) {
   ck_assert_str_eq(found.c_str(),
                    "r.toml:2: unknown key \"prot\" in [page]: is \"port\" meant?\n"
                    "r.toml:5: \"kind\" of [[camera]] is one of \"test\", \"world\", \"file\", \"v4l2\", "
-                   "\"rtsp\", \"libcamera\"");
+                   "\"rtsp\", \"libcamera\", and not \"tset\"");
 }
 END_TEST
 
