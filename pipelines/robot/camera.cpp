@@ -346,6 +346,11 @@ void Camera::tick() {
     rate_ = static_cast<double>(frames - counted_) / interval;
   counted_ = frames;
   last_tick_ = now;
+  if (const guint64 late = late_frames_.exchange(0); late > 0)
+    say(settings_.name,
+        std::to_string(late) + (late == 1 ? " frame was" : " frames were") +
+            " dropped that came late: the head follows no old picture. If this goes on, the machine "
+            "is too slow for this camera: choose a smaller picture or fewer frames a second");
 
   switch (state_) {
     case State::running: {

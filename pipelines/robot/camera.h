@@ -14,6 +14,7 @@
 #include <string>
 
 #include "robot/backoff.h"
+#include "robot/late_frames.h"
 #include "robot/pipeline_text.h"
 #include "robot/settings.h"
 #include "rtsp_output.h"
@@ -146,6 +147,7 @@ class Camera {
   void publish_picture();
   void send_asked_picture();
   void drop_frames(const char* queue, std::atomic<bool>& pass);
+  void drop_late_frames();
   GstElement* element(const char* name) const;
   std::string part_of(GstObject* source) const;
   void on_message(GstMessage* message);
@@ -180,7 +182,9 @@ class Camera {
   bool watched_ = false;
   guint64 picture_asked_after_ = 0;  // a picture newer than this one is published by MQTT; 0: none is
   std::atomic<bool> parked_ = false, draw_ = false, draw_stage_ = false, record_ = false;
-  std::atomic<gint64> latency_ = 0;  // ns
+  std::atomic<gint64> latency_ = 0;       // ns
+  LateFrames late_;                       // streaming thread
+  std::atomic<guint64> late_frames_ = 0;  // dropped and not reported yet
   std::string stage_ = "picture";
   std::shared_ptr<Newest> newest_;
 };

@@ -16,6 +16,7 @@ namespace cerberus::robot {
 
 namespace {
 
+constexpr std::chrono::milliseconds kHeldBack{200};  // by rtspsrc: its latency in pipeline_text.cpp
 constexpr double kParked = 1;  // degrees from zero: several steps of the coarsest motors
 
 // Time since a frame's capture, which its time stamp is, in ns; 0: it is not known.
@@ -45,7 +46,31 @@ void Camera::drop_frames(const char* queue, std::atomic<bool>& pass) {
       &pass, nullptr);
 }
 
+// In front of the detection, so that what is late costs next to nothing and the next frame is younger. A file waits for
+// its reader and is never late.
+void Camera::drop_late_frames() {
+  const SourceKind kind = settings_.source.kind;
+  if (kind == SourceKind::file || kind == SourceKind::world) return;
+  late_ = {};
+  g_autoptr(GstElement) detect = element("detect");
+  g_autoptr(GstPad) pad = gst_element_get_static_pad(detect, "sink");
+  gst_pad_add_probe(
+      pad, GST_PAD_PROBE_TYPE_BUFFER,
+      [](GstPad* pad, GstPadProbeInfo* info, gpointer data) {
+        auto& camera = *static_cast<Camera*>(data);
+        const std::chrono::nanoseconds now(std::chrono::steady_clock::now().time_since_epoch());
+        const std::chrono::nanoseconds held =
+            camera.settings_.source.kind == SourceKind::rtsp ? kHeldBack : std::chrono::nanoseconds(0);
+        const std::chrono::nanoseconds age(age_of(pad, GST_PAD_PROBE_INFO_BUFFER(info)));
+        const bool drop = camera.late_.drop(age - held, now);
+        camera.late_frames_ += camera.late_.report(now);
+        return drop ? GST_PAD_PROBE_DROP : GST_PAD_PROBE_OK;
+      },
+      this, nullptr);
+}
+
 void Camera::connect() {
+  drop_late_frames();
   if (settings_.source.kind == SourceKind::rtsp) {
     const std::pair<const char*, RtspSource*> sources[] = {{"source", &offered_},
                                                            {"recorded", &offered_record_}};

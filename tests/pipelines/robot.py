@@ -7,6 +7,7 @@ import base64
 import os
 import pathlib
 import queue
+import re
 import signal
 import socket
 import socketserver
@@ -151,6 +152,18 @@ def wait_until(what, question):
         time.sleep(.05)
 
 
+def held_up(service, folder):
+    """After a machine stood still the camera does not work off the frames of that time: it drops them, and says so."""
+    (folder / 'robot.toml').write_text(RELOADED)
+    service.reload()
+    wait_until('frames', lambda: 'dropped' in pathlib.Path(service.log.name).read_text() or service.wait_for('WATCHDOG=1'))
+    service.process.send_signal(signal.SIGSTOP)
+    time.sleep(3)
+    service.process.send_signal(signal.SIGCONT)
+    wait_until('late frames are dropped', lambda: re.search(
+        r'cerberusd: good: \d+ frames were dropped that came late', pathlib.Path(service.log.name).read_text()))
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -193,6 +206,7 @@ def main():
                 log = service.reload()
                 assert 'good: RTSP: the encoder nvh264enc is not installed' in log or 'has no RTSP server' in log, log
                 service.wait_for('WATCHDOG=1')
+            held_up(service, folder)
             code, log = service.stop()
         finally:
             service.process.kill()

@@ -8,6 +8,7 @@
 #include "robot/byte_range.h"
 #include "robot/client_address.h"
 #include "robot/devices.h"
+#include "robot/late_frames.h"
 #if HAVE_ARGON2
 #include "robot/passwords.h"
 #endif
@@ -113,6 +114,18 @@ START_TEST(only_the_entrance_is_open_and_what_changes_needs_more) {
   ck_assert(!find_route("GET", "") && !find_route("GET", "/page.js/") && !find_route("HEAD", "/login"));
   ck_assert(find_route("HEAD", "/events")->role == Role::viewer &&
             find_route("HEAD", "/")->role == Role::none);
+}
+END_TEST
+
+START_TEST(late_frames_are_dropped_but_for_one_a_second_and_reported_once_a_minute) {
+  LateFrames late;
+  const auto at = [](int ms) { return milliseconds(3600000 + ms); };
+  ck_assert(!late.drop(milliseconds(500), at(0)) && late.report(at(0)) == 0);
+  ck_assert(late.drop(milliseconds(501), at(100)));
+  ck_assert(late.drop(seconds(4), at(999)));
+  ck_assert(!late.drop(seconds(4), at(1000)));  // one a second
+  ck_assert(late.report(at(1099)) == 0 && late.report(at(1100)) == 2 && late.report(at(1100)) == 0);
+  ck_assert(late.drop(seconds(4), at(1500)) && late.report(at(61099)) == 0 && late.report(at(61100)) == 1);
 }
 END_TEST
 
@@ -428,6 +441,7 @@ int main() {
                           every_message_is_read_letter_by_letter,
                           a_viewer_may_watch_an_operator_steer_and_the_owner_begin_and_end_privacy,
                           only_the_entrance_is_open_and_what_changes_needs_more,
+                          late_frames_are_dropped_but_for_one_a_second_and_reported_once_a_minute,
                           a_device_is_known_by_its_hash_until_it_is_revoked,
                           a_trusted_proxy_tells_whose_request_it_hands_on_and_nobody_else_does,
                           another_name_for_this_machine_is_refused,
