@@ -102,6 +102,7 @@ void FrameJournal::assign(Entry& entry, Span& span) {
   Findings& to = span.findings;
   to.tracks.insert(note.tracks.begin(), note.tracks.end());
   to.kinds.insert(note.kinds.begin(), note.kinds.end());
+  to.people = std::max(to.people, note.people);
   if (to.rule.empty()) to.rule = note.rule;
   if (note.picture && (!to.picture || note.score > to.score)) {
     to.picture = std::exchange(note.picture, nullptr);

@@ -26,6 +26,7 @@ struct Note {
   std::string line;                     // JSON, one object and a line feed; empty: none
   std::vector<std::uint32_t> tracks;    // identities
   std::vector<std::string_view> kinds;  // of the objects; texts that live as long as the program
+  std::uint32_t people = 0;             // a group counts as two
   std::string rule;                     // of the fusion; empty: none that acts
   Picture picture;
   double score = 0;  // of the picture, see best_moment.h
@@ -35,8 +36,9 @@ struct Note {
 struct Findings {
   std::set<std::uint32_t> tracks;
   std::set<std::string_view> kinds;
-  std::string rule;  // the first one that acted
-  Picture picture;   // of the highest score
+  std::uint32_t people = 0;  // the most in one frame
+  std::string rule;          // the first one that acted
+  Picture picture;           // of the highest score
   double score = 0;
   Time shown{};  // running time of the picture
 };

@@ -8,7 +8,7 @@ namespace cerberus::robot {
 
 namespace {
 
-constexpr std::array<Route, 15> kRoutes{{
+constexpr std::array<Route, 16> kRoutes{{
     {"GET", "/", Role::none},
     {"GET", "/page.css", Role::none},
     {"GET", "/page.js", Role::none},
@@ -18,6 +18,7 @@ constexpr std::array<Route, 15> kRoutes{{
     {"GET", "/socket", Role::viewer},
     {"GET", "/events", Role::viewer},
     {"GET", "/events/*", Role::viewer},
+    {"GET", "/reasons", Role::viewer},
     {"GET", "/picture/*", Role::viewer},
     {"POST", "/picture", Role::viewer},
     {"GET", "/log", Role::owner},

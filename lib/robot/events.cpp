@@ -3,11 +3,13 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <vector>
 
 #include "record/archive/folder.h"
+#include "record/file_names.h"
 #include "text/json_line.h"
 
 namespace cerberus::robot {
@@ -19,12 +21,20 @@ namespace {
 void write(text::JsonLine& line, const Recording& row) {
   line.open('{').key("camera").text(row.camera).key("id").integer(row.id);
   line.key("begin").integer(row.begin.count() / 1000000).key("end").integer(row.end.count() / 1000000);
+  line.key("event").integer(row.event).key("part").integer(row.part);
   line.key("reason").text(row.reason).key("tracks").text(row.tracks).key("kinds").text(row.kinds);
+  line.key("people").integer(row.people).key("name").text(download_name(row, row.file));
   line.key("bytes").integer(row.bytes).key("open").boolean(row.open).key("keep").boolean(row.keep);
   line.key("picture").boolean(!row.picture.empty()).close('}');
 }
 
 }  // namespace
+
+std::string download_name(const Recording& row, std::string_view file) {
+  const std::size_t dot = file.rfind('.');
+  return record::expand_name("{camera}_%Y-%m-%d_%H-%M-%S", {row.begin, row.camera, row.event, row.part}) +
+         std::string(file.substr(std::min(dot, file.size())));
+}
 
 // The index stays open between two changes: to open it checks the whole database. A recorder that finds it damaged puts
 // another file in its place.
@@ -63,10 +73,11 @@ bool Events::open_to_read(record::Index& index, std::string& fault) const {
   return fault.empty();
 }
 
-std::string Events::list(const std::string& camera, std::string& fault) const {
+std::string Events::list(record::Wanted wanted, std::string& fault) const {
   std::vector<Recording> rows;
   record::Index index;
-  if (open_to_read(index, fault)) fault = index.read_newest(camera, kMost, rows);
+  wanted.most = std::min(wanted.most, kMost);
+  if (open_to_read(index, fault)) fault = index.read_newest(wanted, rows);
   text::JsonLine line;
   line.open('[');
   for (const Recording& row : rows) write(line, row);
@@ -74,10 +85,25 @@ std::string Events::list(const std::string& camera, std::string& fault) const {
   return text;
 }
 
+std::string Events::reasons(const std::string& camera, std::string& fault) const {
+  std::vector<std::string> reasons;
+  record::Index index;
+  if (open_to_read(index, fault)) fault = index.read_reasons(camera, reasons);
+  text::JsonLine line;
+  line.open('[');
+  for (const std::string& reason : reasons) line.text(reason);
+  return std::string(line.close(']').finish());
+}
+
 std::string Events::newest(const std::string& camera, std::string& fault) const {
   std::vector<Recording> rows;
   record::Index index;
-  if (open_to_read(index, fault)) fault = index.read_newest(camera, 1, rows);
+  if (open_to_read(index, fault)) {
+    record::Wanted wanted;
+    wanted.camera = camera;
+    wanted.most = 1;
+    fault = index.read_newest(wanted, rows);
+  }
   if (rows.empty()) return {};
   text::JsonLine line;
   write(line, rows.front());
@@ -90,7 +116,7 @@ std::optional<Recording> Events::find(const std::string& camera, std::int64_t id
   std::vector<Recording> rows;
   record::Index index;
   if (open_to_read(index, fault)) fault = index.read_one(id, rows);
-  if (rows.empty() || rows.front().camera != camera) return std::nullopt;
+  if (rows.empty() || rows.front().camera != camera || rows.front().broken) return std::nullopt;
   return std::move(rows.front());
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "record/archive/index.h"
@@ -14,15 +15,17 @@ namespace cerberus::robot {
 
 class Events {
  public:
-  // Recordings in a list at most: the newest.
+  // Recordings in a list at most.
   static constexpr std::size_t kMost = 200;
 
   // `folder` and `index` as of eventrecorder's `location` and `index`.
   explicit Events(std::string folder, std::string index = "recordings.sqlite")
       : folder_(std::move(folder)), index_(std::move(index)) {}
 
-  // The newest first, as a JSON list; those of `camera` alone. `fault`: what is wrong; empty: nothing.
-  std::string list(const std::string& camera, std::string& fault) const;
+  // Those that are wanted, kMost at most, the newest first, as a JSON list. `fault`: what is wrong; empty: nothing.
+  std::string list(record::Wanted wanted, std::string& fault) const;
+  // What began recordings of a camera, as a JSON list of texts.
+  std::string reasons(const std::string& camera, std::string& fault) const;
   std::optional<record::Recording> find(const std::string& camera, std::int64_t id, std::string& fault) const;
   // The newest recording of a camera, a JSON object as in the list; empty: there is none.
   std::string newest(const std::string& camera, std::string& fault) const;
@@ -41,5 +44,8 @@ class Events {
   record::Index changes_;                           // open since the first change
   std::pair<std::uint64_t, std::uint64_t> file_{};  // device and inode of it
 };
+
+// The name under which a file of a recording is saved: camera and local time, "front_2026-11-28_14-30-05.mp4".
+std::string download_name(const record::Recording& row, std::string_view file);
 
 }  // namespace cerberus::robot

@@ -164,6 +164,7 @@ void Camera::on_report(const GstStructure* report) {
     gboolean last = FALSE;
     gst_structure_get_boolean(report, "last", &last);
     const std::string_view what = state;
+    ++changes_of_recordings_;
     if (what == "fault") {
       const gchar* fault = gst_structure_get_string(report, "fault");
       set_recording_fault(fault ? fault : "unknown");

@@ -95,6 +95,8 @@ class Camera {
   }
 
   void set_on_publish(OnPublish on_publish) { on_publish_ = std::move(on_publish); }
+  // How often a recording began, ended, failed or was deleted by retention.
+  guint64 changes_of_recordings() const { return changes_of_recordings_; }
   // Publishes the newest recording by MQTT, or that there is none.
   void publish_event();
   // Why recordings cannot be made or listed; empty: they can.
@@ -169,6 +171,7 @@ class Camera {
   Backoff camera_backoff_, head_backoff_, recorder_backoff_;
   std::string fault_, head_state_, head_reason_;
   bool recording_ = false;
+  guint64 changes_of_recordings_ = 0;
   std::string recording_fault_;      // of the recorder that runs, or why there is none
   std::string published_recording_;  // the last payload of the topic `recording`
   GstElement* pipeline_ = nullptr;

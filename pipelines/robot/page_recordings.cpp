@@ -93,21 +93,45 @@ Camera* PageServer::camera(std::string_view name) const {
   return nullptr;
 }
 
+// What is not a number counts as not given.
+record::Wanted PageServer::wanted_of(const Request& request, const std::string& camera) {
+  record::Wanted wanted;
+  wanted.camera = camera;
+  const auto time = [&](const char* key) {
+    const std::optional<std::int64_t> given = read_id(request.value(key));
+    constexpr std::int64_t kLatest = std::int64_t{1} << 43;  // ms, in the year 2248; ns of it fit
+    return given
+               ? std::optional<record::Time>(std::chrono::milliseconds(std::clamp(*given, -kLatest, kLatest)))
+               : std::nullopt;
+  };
+  wanted.from = time("from");
+  wanted.until = time("until");
+  wanted.reason = request.value("reason");
+  wanted.kept = request.value("kept") == "1";
+  wanted.below = read_id(request.value("below"));
+  if (const auto most = read_id(request.value("most")); most && *most > 0)
+    wanted.most = static_cast<std::size_t>(*most);
+  return wanted;
+}
+
 // Of a camera with a recorder. Cameras that share a folder share its index.
 Events& PageServer::events_of(const Camera& camera) {
   const std::string& folder = camera.settings().recorder->folder;
   return events_.try_emplace(folder, folder).first->second;
 }
 
-// All cameras, or one.
+// GET /events (camera; from and until in ms since 1970, reason, kept=1, below=ID, most) and /reasons (camera).
 void PageServer::answer_events(Request& request) {
   if (house_.mode() == Mode::privacy)
     return request.refuse(SOUP_STATUS_FORBIDDEN, "privacy: nothing is shown");
   const Camera* from = camera(request.value("camera"));
   if (from == nullptr || !from->settings().recorder)
     return request.respond(SOUP_STATUS_OK, "application/json", "[]\n");
+  const std::string& name = from->settings().name;
+  Events& events = events_of(*from);
   std::string fault;
-  const std::string list = events_of(*from).list(from->settings().name, fault);
+  const std::string list =
+      request.path == "/reasons" ? events.reasons(name, fault) : events.list(wanted_of(request, name), fault);
   if (!fault.empty()) return request.refuse(SOUP_STATUS_SERVICE_UNAVAILABLE, fault);
   request.respond(SOUP_STATUS_OK, "application/json", list);
 }
@@ -156,6 +180,10 @@ void PageServer::answer_recording(Request& request) {
     return request.refuse(SOUP_STATUS_REQUESTED_RANGE_NOT_SATISFIABLE, "the recording is shorter");
   }
   soup_message_headers_set_content_type(headers, type_of(file), nullptr);
+  g_autoptr(GHashTable) name = g_hash_table_new(g_str_hash, g_str_equal);
+  const std::string saved = download_name(*row, file);
+  g_hash_table_insert(name, const_cast<char*>("filename"), const_cast<char*>(saved.c_str()));
+  soup_message_headers_set_content_disposition(headers, "inline", name);
   if (range.kind == ByteRange::Kind::whole)
     return send_whole(listener_, request.message, std::move(open), about.st_size);
   g_autoptr(GBytes) bytes =
@@ -180,6 +208,7 @@ void PageServer::change_recording(Request& request) {
   const std::string fault =
       deletes ? events.remove(name, *id) : events.keep(name, *id, request.value("keep") == "1");
   if (!fault.empty()) return request.refuse(SOUP_STATUS_CONFLICT, fault);
+  ++changes_;
   log_access(request.who(), (deletes ? "deleted " : "marked ") + name + " recording " + std::to_string(*id));
   if (deletes) camera(name)->publish_event();
   request.done();

@@ -238,7 +238,7 @@ void PageServer::answer(Request& request) {
   if (path == "/login") return log_in(request);
   if (path == "/logout") return log_out(request);
   if (path == "/password") return set_password(request);
-  if (path == "/events") return answer_events(request);
+  if (path == "/events" || path == "/reasons") return answer_events(request);
   if (path.starts_with("/events/")) return answer_recording(request);
   if (path == "/keep" || path == "/delete") return change_recording(request);
   if (path == "/log") return answer_log(request);

@@ -59,6 +59,7 @@ class PageServer {
   void log_out(Request& request);
   void set_password(Request& request);
   void answer_events(Request& request);
+  static record::Wanted wanted_of(const Request& request, const std::string& camera);
   void answer_recording(Request& request);
   void change_recording(Request& request);
   void answer_log(Request& request);
@@ -97,6 +98,7 @@ class PageServer {
   SoupServer* server_ = nullptr;
   std::vector<std::unique_ptr<Viewer>> viewers_;
   std::map<std::string, Events> events_;  // by folder
+  guint64 changes_ = 0;                   // of recordings, by pages
   BackgroundWork background_;
   PageListener listener_;
 #if HAVE_MQTT

@@ -268,6 +268,10 @@ std::string PageServer::state() {
     line.fixed((used - cpu_seconds_) * 1e8 / static_cast<double>(time - measured_), 0);
   else
     line.null();
+  // Another number whenever a list of events is out of date: cameras may share a folder.
+  guint64 events = changes_;
+  for (const auto& camera : house_.cameras) events += camera->changes_of_recordings();
+  line.key("events").integer(events);
   line.key("viewers").integer(viewers_.size()).key("cameras").open('[');
   for (const auto& camera : house_.cameras) {
     line.open('{')

@@ -280,6 +280,7 @@ void DiskWriter::execute(Close& command) {
       comma_separated(findings.tracks, [](std::uint32_t track) { return std::to_string(track); });
   file.row.kinds = comma_separated(findings.kinds, [](std::string_view kind) { return std::string(kind); });
   file.row.rule = findings.rule;
+  file.row.people = findings.people;
   if (findings.picture) save_picture(file, findings.picture);
 }
 
@@ -401,14 +402,15 @@ void DiskWriter::report_end(File& file, FileReport::State state, const FileFault
     file.row.end = file.row.begin + time_of(file.last);
     if (const int error = file.lines.sync(); error)
       warn("the JSON lines beside " + record::in_quotes(file.path) + ": " + std::strerror(error));
+    if (state == FileReport::State::failed && bytes > 0) archive_.examine(file.row, file.lock);
     if (bytes == 0)
       archive_.discard(file.row);
     else
       archive_.finish(file.row, file.lock);
   }
   const auto path_of = [&](const std::string& name) { return name.empty() ? name : folder_ + '/' + name; };
-  report({state, file.spec, file.path, path_of(file.row.lines), path_of(file.row.picture), file.end, bytes,
-          fault});
+  report({state, file.spec, file.path, path_of(file.row.lines), path_of(file.row.picture), file.end,
+          file.row.broken ? 0 : bytes, fault});
   retain();
 }
 

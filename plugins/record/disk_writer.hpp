@@ -27,8 +27,8 @@ struct FileReport {
   std::string path;                      // empty: none could be made
   std::string lines, picture;            // paths of what is beside it; empty: there is none
   record::FileEnd end;                   // of one that ended
-  std::uint64_t bytes = 0;
-  FileFault fault;  // of one that failed, and why all recording fails
+  std::uint64_t bytes = 0;               // 0: nothing in it plays
+  FileFault fault;                       // of one that failed, and why all recording fails
 };
 
 class DiskWriter {

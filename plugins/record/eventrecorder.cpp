@@ -47,7 +47,8 @@
  *
  * `index` is an SQLite database (WAL) with the table `recordings`, a row for each file: `file`, `lines`, `picture`
  * (names below `location`), `camera`, `event`, `part`, `begin`, `end` (nanoseconds since 1970, UTC), `reason`, `tracks`,
- * `kinds`, `rule`, `size` (bytes of all three files), `open` (1 while it is written), `keep`. Other programs may read it at any
+ * `kinds`, `rule`, `size` (bytes of all three files), `people` (the most at once), `open` (1 while it is written), `broken` (1: nothing
+ * in it plays), `keep`. Other programs may read it at any
  * time, and set `keep`; so does the action signal `keep-recording` (location, keep). Rows and files are reconciled at
  * the start. Retention deletes file, lines, picture and row together, by `retention-age`, `retention-size` and
  * `retention-free`, unless `keep` is set. Files that the index does not name are never deleted.

@@ -3,6 +3,7 @@
 
 #include <gst/app/gstappsrc.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace cerberus::plugin {
@@ -13,9 +14,29 @@ namespace {
 // the disk .5 s after a keyframe at 25 frames a second, and a killed process loses no more. Measured: smaller ones cost
 // size (1.6 kB each). Guarded by the benchmark first_bytes.
 constexpr guint kFragmentMilliseconds = 400;
-constexpr int kUnbuffered = 2;  // filesink: a buffer of 64 KiB would delay the first byte by seconds
+// Frames of the first one, which the `moov` follows: a file whose writer is killed before that plays nowhere. Of two,
+// because qtdemux drops a first fragment of one. Guarded by the tests of files that are never closed or cut off.
+constexpr double kFirstFrames = 2.2;  // the muxer ends it where another frame would make it longer
+constexpr int kUnbuffered = 2;        // filesink: a buffer of 64 KiB would delay the first byte by seconds
 // Audio that is so much later than the video is no longer waited for: a muxer writes nothing while one track is silent.
 constexpr GstClockTime kSilence = 3 * GST_SECOND;
+
+// The length of the first fragment, as far as the caps tell the rate.
+guint first_fragment(GstCaps* caps) {
+  gint frames = 0, seconds = 0;
+  if (!gst_structure_get_fraction(gst_caps_get_structure(caps, 0), "framerate", &frames, &seconds) ||
+      frames <= 0 || seconds <= 0)
+    return kFragmentMilliseconds;
+  const double milliseconds = kFirstFrames * 1000 * seconds / frames;
+  return static_cast<guint>(std::clamp<double>(milliseconds, 1, kFragmentMilliseconds));
+}
+
+GstPadProbeReturn after_first_fragment(GstPad* pad, GstPadProbeInfo* info, gpointer) {
+  if (gst_buffer_memcmp(GST_PAD_PROBE_INFO_BUFFER(info), 4, "moov", 4) != 0) return GST_PAD_PROBE_OK;
+  g_autoptr(GstElement) muxer = gst_pad_get_parent_element(pad);
+  if (muxer) g_object_set(muxer, "fragment-duration", kFragmentMilliseconds, nullptr);
+  return GST_PAD_PROBE_REMOVE;
+}
 
 GstElement* make(const char* factory, GstElement* bin) {
   GstElement* element = gst_element_factory_make(factory, nullptr);
@@ -57,8 +78,10 @@ void FilePipeline::build(const FileSpec& spec, const std::string& path) {
   GstElement* muxer = make(spec.mp4 ? "mp4mux" : "matroskamux", pipeline_);
   GstElement* sink = make("filesink", pipeline_);
   if (spec.mp4) {
-    g_object_set(muxer, "fragment-duration", kFragmentMilliseconds, nullptr);
+    g_object_set(muxer, "fragment-duration", first_fragment(spec.caps[0].get()), nullptr);
     gst_util_set_object_arg(G_OBJECT(muxer), "fragment-mode", "first-moov-then-finalise");
+    g_autoptr(GstPad) source = gst_element_get_static_pad(muxer, "src");
+    gst_pad_add_probe(source, GST_PAD_PROBE_TYPE_BUFFER, after_first_fragment, nullptr, nullptr);
   }
   g_object_set(sink, "location", path.c_str(), "buffer-mode", kUnbuffered, "sync", FALSE, "async", FALSE,
                nullptr);

@@ -102,6 +102,8 @@ double FrameNotes::read_objects(GstBuffer* buffer, record::Note& note, vision::G
     const auto* region = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, k));
     note.kinds.push_back(cerberus_region_kind_get_nick(region->kind));
     if (region->tracked) note.tracks.push_back(region->id);
+    const bool person = region->person || region->kind == CERBERUS_REGION_KIND_PERSON_LIKE;
+    if (region->tracked) note.people += region->kind == CERBERUS_REGION_KIND_GROUP ? 2 : person ? 1 : 0;
     const vision::Box box{region->x, region->y, region->width, region->height};
     best = std::max(best, record::view_score(box, size_, luma.empty() ? 0 : record::sharpness(luma, box)));
   }

@@ -9,10 +9,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <random>
+#include <set>
 
 #include "record/archive/index.h"
 #include "recorder_rig.h"
@@ -162,10 +164,13 @@ bool is_being_completed(const std::string& file) {
 
 // What was not acknowledged: whole frames from a keyframe on, without a hole.
 void check_open(const std::vector<Acknowledged>& all, const std::string& folder, bool restarted) {
+  const auto rows = rows_of(folder);
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string file = entry.path();
-    if (entry.path().extension() != ".mp4" || entry.file_size() < 41 * 2000)
-      continue;  // before its first fragment
+    if (entry.path().extension() != ".mp4" || entry.file_size() == 0) continue;
+    if (!restarted && entry.file_size() < 41 * 2000) continue;  // perhaps before its first fragment
+    const auto row = std::ranges::find(rows, entry.path().filename().string(), &record::Recording::file);
+    if (restarted && row != rows.end() && row->broken) continue;
     if (std::ranges::count(all, file, &Acknowledged::file)) continue;
     if (!restarted && is_being_completed(file)) continue;
     const auto frames = read_back(file);
@@ -209,6 +214,84 @@ void check_restart(const std::string& folder) {
 }
 
 }  // namespace
+
+namespace {
+
+std::string content_of(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {(std::istreambuf_iterator<char>(stream)), {}};
+}
+
+// A recording of 71 frames: as it is on the disk while it is written, and complete.
+std::array<std::string, 2> bytes_of_recording(bool mp4) {
+  Rig rig;
+  if (!mp4) gst_util_set_object_arg(G_OBJECT(rig.element), "container", "matroska");
+  rig.frame_size = 500;
+  rig.start();
+  rig.play_to(40);
+  rig.start_event();
+  g_autoptr(GstStructure) started = rig.wait_for_file("started");
+  const std::string file = gst_structure_get_string(started, "location");
+  rig.play_to(80);
+  std::string open;
+  for (std::string last = "-"; open.size() < 60 * 500 || open != last; g_usleep(50 * 1000)) {
+    last = open;
+    open = content_of(file);
+  }
+  rig.finish();
+  return {open, content_of(file)};
+}
+
+// Lengths at which something begins or ends, and some between.
+std::set<std::size_t> cuts_of(const std::string& bytes, bool mp4) {
+  std::set<std::size_t> cuts;
+  for (std::size_t k = 1; k < 80; k += 3) cuts.insert(k);
+  for (std::size_t k = 80; k < bytes.size(); k += bytes.size() / 30) cuts.insert(k);
+  std::size_t boxes = 0;
+  for (std::size_t at = 0; mp4 && at + 8 <= bytes.size() && boxes < 12; ++boxes) {
+    const std::size_t size = GST_READ_UINT32_BE(bytes.data() + at);
+    for (const std::size_t beside : {at + 1, at + 4, at + 8, at + 9, at + size - 1, at + size})
+      if (beside < bytes.size()) cuts.insert(beside);
+    if (size < 8) break;
+    at += size;
+  }
+  return cuts;
+}
+
+}  // namespace
+
+// Of an open row: what is offered plays, and what plays is offered.
+GST_START_TEST(a_file_that_was_cut_off_anywhere_plays_or_is_marked_as_broken) {
+  const bool mp4 = __i__ == 0;
+  const std::string ending = mp4 ? ".mp4" : ".mkv";
+  Folder folder;
+  record::Index index;
+  bool damaged = false;
+  fail_unless(index.open(folder.path() + "/recordings.sqlite", damaged).empty());
+  int number = 0;
+  for (const std::string& bytes : bytes_of_recording(mp4))
+    for (const std::size_t cut : cuts_of(bytes, mp4)) {
+      record::Recording row;
+      row.file = std::to_string(++number) + '_' + std::to_string(cut) + ending;
+      std::ofstream(folder.path() + '/' + row.file, std::ios::binary) << bytes.substr(0, cut);
+      bool taken = false;
+      fail_unless(index.add(row, taken).empty());
+    }
+  index.close();
+  check_restart(folder.path());
+  int broken = 0, sound = 0;
+  for (const auto& row : rows_of(folder.path())) {
+    std::vector<Frame> frames;
+    try_to_read(folder.path() + '/' + row.file, frames);  // what follows the last whole frame may be an error
+    fail_unless(row.broken == frames.empty(), "%s: %d frames, broken %d", row.file.c_str(),
+                static_cast<int>(frames.size()), row.broken);
+    for (std::size_t k = 0; k < frames.size(); ++k)
+      fail_unless(frames[k].number == frames[0].number + k, "%s", row.file.c_str());
+    ++(row.broken ? broken : sound);
+  }
+  fail_unless(broken > 10 && sound > 10, "%d broken, %d sound", broken, sound);
+}
+GST_END_TEST
 
 GST_START_TEST(a_killed_recorder_loses_nothing_that_it_acknowledged) {
   const char* wanted = getenv("CERBERUS_KILLS");
@@ -264,6 +347,8 @@ static Suite* recorder_killed_suite() {
     tcase_add_test(tests, what_was_acknowledged_before_a_power_cut_is_whole);
   else
     tcase_add_test(tests, a_killed_recorder_loses_nothing_that_it_acknowledged);
+  if (!getenv(kInto) && !getenv(kRecorded))
+    tcase_add_loop_test(tests, a_file_that_was_cut_off_anywhere_plays_or_is_marked_as_broken, 0, 2);
   suite_add_tcase(suite, tests);
   return suite;
 }

@@ -50,15 +50,16 @@ struct Frame {
   bool keyframe;
 };
 
-// The frames of one track of a file, through a demuxer. `pad`: video_0, audio_0, ...
-inline std::vector<Frame> read_back(const std::string& file, const std::string& pad = "video_0") {
+// The frames of one track of a file, through a demuxer. `pad`: video_0, audio_0, ... Returns whether it reads the file to
+// its end.
+inline bool try_to_read(const std::string& file, std::vector<Frame>& frames,
+                        const std::string& pad = "video_0") {
   const bool mp4 = file.ends_with(".mp4");
   const std::string line = "filesrc location=\"" + file + "\" ! " + (mp4 ? "qtdemux" : "matroskademux") +
                            " name=d d." + pad + " ! fakesink name=end signal-handoffs=true sync=false";
   GError* error = nullptr;
   GstElement* pipeline = gst_parse_launch(line.c_str(), &error);
   fail_unless(pipeline && !error, "%s", error ? error->message : "");
-  std::vector<Frame> frames;
   g_autoptr(GstElement) end = gst_bin_get_by_name(GST_BIN(pipeline), "end");
   g_signal_connect(end, "handoff",
                    G_CALLBACK(+[](GstElement*, GstBuffer* buffer, GstPad* at, std::vector<Frame>* to) {
@@ -78,9 +79,15 @@ inline std::vector<Frame> read_back(const std::string& file, const std::string& 
   g_autoptr(GstBus) bus = gst_element_get_bus(pipeline);
   g_autoptr(GstMessage) message = gst_bus_timed_pop_filtered(
       bus, 60 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
-  fail_unless(message && GST_MESSAGE_TYPE(message) == GST_MESSAGE_EOS, "%s cannot be read", file.c_str());
+  const bool ended = message && GST_MESSAGE_TYPE(message) == GST_MESSAGE_EOS;
   gst_element_set_state(pipeline, GST_STATE_NULL);
   gst_object_unref(pipeline);
+  return ended;
+}
+
+inline std::vector<Frame> read_back(const std::string& file, const std::string& pad = "video_0") {
+  std::vector<Frame> frames;
+  fail_unless(try_to_read(file, frames, pad), "%s cannot be read", file.c_str());
   return frames;
 }
 

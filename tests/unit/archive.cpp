@@ -209,10 +209,13 @@ START_TEST(what_a_killed_process_left_is_closed_with_what_is_there) {
   rig.begin("empty", 999);  // closes the lock of the one before, as the end of a process does
   rig.file.close();
   rig.open();
-  ck_assert_uint_eq(rig.complaints.size(), 0);
+  // It holds no frame that could be played.
+  ck_assert_uint_eq(rig.complaints.size(), 1);
+  ck_assert(rig.complaints[0].find("open.mp4\" was cut off") != std::string::npos);
   const auto rows = rig.rows();
   ck_assert_uint_eq(rows.size(), 2);
   ck_assert_str_eq(rows[1].file.c_str(), "open.mp4");
+  ck_assert(rows[1].broken && !rows[0].broken);
   ck_assert_str_eq(rows[1].lines.c_str(), "open.jsonl");
   ck_assert(!rows[1].open && rows[1].end > open.begin);
   ck_assert_uint_eq(rows[1].bytes, 310);

@@ -106,7 +106,11 @@ START_TEST(a_reader_sees_the_newest_rows_of_a_camera_and_changes_nothing) {
     // While another one writes.
     ck_assert(reader.open_to_read(path).empty());
     std::vector<Recording> rows;
-    ck_assert(reader.read_newest("yard's", 3, rows).empty());
+    ck_assert(
+        reader
+            .read_newest({.camera = "yard's", .from = {}, .until = {}, .reason = {}, .below = {}, .most = 3},
+                         rows)
+            .empty());
     ck_assert_uint_eq(rows.size(), 3);
     ck_assert(rows[0].file == "4" && rows[1].file == "3" && rows[2].file == "2");
     ck_assert(reader.read_one(4, rows).empty() && rows.size() == 1 && rows[0].file == "other");
@@ -118,7 +122,9 @@ START_TEST(a_reader_sees_the_newest_rows_of_a_camera_and_changes_nothing) {
   std::filesystem::permissions(folder.path, std::filesystem::perms(0555));
   ck_assert(reader.open_to_read(path).empty());
   std::vector<Recording> rows;
-  ck_assert(reader.read_newest("gate", 9, rows).empty() && rows.size() == 1);
+  ck_assert(reader.read_newest({.camera = "gate", .from = {}, .until = {}, .reason = {}, .below = {}}, rows)
+                .empty() &&
+            rows.size() == 1);
   reader.close();
   std::filesystem::permissions(folder.path, std::filesystem::perms(0755));
 }
@@ -136,7 +142,7 @@ START_TEST(the_database_is_one_that_others_read_by_its_documented_columns) {
       ask(path, "SELECT camera, begin, end, tracks, kinds, rule, picture, size, keep, open FROM recordings");
   ck_assert_str_eq(read.c_str(), "yard's|1795389333736236000|1795389342736236000|||||0|0|1|");
   const std::string modes = ask(path, "PRAGMA journal_mode; PRAGMA user_version");
-  ck_assert_str_eq(modes.c_str(), "wal|1|");
+  ck_assert_str_eq(modes.c_str(), "wal|2|");
   struct stat about{};
   ck_assert_int_eq(stat(path.c_str(), &about), 0);
   ck_assert_int_eq(about.st_mode & 0777 & ~0640, 0);

@@ -3,6 +3,7 @@
 #include "record/archive/mp4_repair.h"
 
 #include <check.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -51,8 +52,31 @@ std::string repaired(std::string bytes, Mp4State expected) {
 }  // namespace
 
 START_TEST(a_file_with_a_whole_moov_stays_as_it_is) {
-  for (const std::string& sound : {kFragments, kExtended + kFinal, kHidden + kFinal, std::string(), kFtyp})
+  for (const std::string& sound : {kFragments, kExtended + kFinal, kHidden + kFinal})
     ck_assert(repaired(sound, Mp4State::sound) == sound);
+}
+END_TEST
+
+START_TEST(a_file_that_ends_before_its_first_moov_does_is_broken) {
+  const std::string whole = kFtyp + kFree + box("mdat", kFirst) + box("moov", kMoov);
+  for (std::size_t length = 0; length < whole.size(); ++length)
+    ck_assert(repaired(whole.substr(0, length), Mp4State::broken) == whole.substr(0, length));
+  ck_assert(repaired(whole, Mp4State::sound) == whole);
+  ck_assert(repaired(std::string(4096, '\0') + kRest, Mp4State::broken).size() == 4096 + kRest.size());
+}
+END_TEST
+
+// As a recorder opens its files: with O_APPEND a write to a place would go to the end.
+START_TEST(a_file_that_is_open_to_append_is_repaired_in_its_place) {
+  char path[] = "/tmp/cerberus-mp4-XXXXXX";
+  const int made = mkstemp(path), fd = open(path, O_RDWR | O_APPEND);
+  ck_assert(write(fd, kHidden.data(), kHidden.size()) == static_cast<ssize_t>(kHidden.size()));
+  ck_assert(repair_mp4(fd) == Mp4State::repaired);
+  ck_assert_int_eq(lseek(fd, 0, SEEK_END), static_cast<off_t>(kHidden.size()));
+  ck_assert(repair_mp4(fd) == Mp4State::sound);
+  close(fd);
+  close(made);
+  unlink(path);
 }
 END_TEST
 
@@ -112,7 +136,8 @@ int main() {
   Suite* suite = suite_create("mp4 repair");
   TCase* cases = tcase_create("mp4 repair");
   for (const TTest* test :
-       {a_file_with_a_whole_moov_stays_as_it_is, a_hidden_moov_counts_again,
+       {a_file_with_a_whole_moov_stays_as_it_is, a_file_that_ends_before_its_first_moov_does_is_broken,
+        a_file_that_is_open_to_append_is_repaired_in_its_place, a_hidden_moov_counts_again,
         an_extended_mdat_is_shortened_again, an_mdat_with_a_size_of_64_bits_is_shortened_again,
         a_torn_moov_at_the_end_is_cut_off, a_hidden_moov_across_two_reads_is_found,
         any_bytes_end_in_an_answer})

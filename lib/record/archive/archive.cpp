@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "record/archive/matroska.h"
 #include "record/archive/mp4_repair.h"
 
 namespace cerberus::record {
@@ -143,8 +144,16 @@ bool Archive::restore(Recording& row, const OpenFile& file) {
       *name = there;
   row.end = std::max(row.begin, Time(folder_.changed(row.file)));
   row.open = false;
-  if (row.file.ends_with(kVideos[0]) && file) repair_mp4(file.descriptor());
+  if (file) examine(row, file);
   return true;
+}
+
+void Archive::examine(Recording& recording, const OpenFile& file) {
+  recording.broken = recording.file.ends_with(kVideos[0]) ? repair_mp4(file.descriptor()) == Mp4State::broken
+                                                          : !has_block(file.descriptor());
+  if (recording.broken)
+    complain(in_quotes(folder_.path_of(recording.file)) +
+             " was cut off before there was anything in it to play: it is marked as broken and not offered");
 }
 
 void Archive::reconcile() {

@@ -25,7 +25,8 @@ class Archive {
   };
 
   // Opens the index and reconciles rows and files: a row without its file is removed with what else is left of it, or
-  // alone where it is open; one that a process left open is closed with what is there (MP4 is repaired); one of a
+  // alone where it is open; one that a process left open is closed with what is there (MP4 is repaired, and a file in which nothing plays is marked as
+  // broken); one of a
   // file without content is removed with it. A damaged index is renamed to NAME.damaged and begun anew. Then retention
   // is applied: returns the files that were deleted. An index that cannot be opened is tried again by retain(), every
   // 10 s; what is recorded until then gets its rows then, while the process runs and the file is there.
@@ -39,6 +40,8 @@ class Archive {
   // Makes a file beside it, and notes its name in `recording`. Returns an errno.
   int add_lines(Recording& recording, OpenFile& file) const;
   int add_picture(Recording& recording, OpenFile& file) const;
+  // Of a recording whose writer failed: repairs it, or notes that it is broken.
+  void examine(Recording& recording, const OpenFile& file);
   // Closes the row of a recording whose files are complete. `file` is written to the disk before.
   void finish(Recording& recording, const OpenFile& file);
   // Deletes the files and the row.

@@ -40,6 +40,9 @@ constexpr std::array kMigrations = {
     " open INTEGER NOT NULL DEFAULT 1,"
     " keep INTEGER NOT NULL DEFAULT 0);"
     "CREATE INDEX recordings_by_begin ON recordings (begin);",
+    "ALTER TABLE recordings ADD COLUMN people INTEGER NOT NULL DEFAULT 0;"  // at once
+    "ALTER TABLE recordings ADD COLUMN broken INTEGER NOT NULL DEFAULT 0;"  // 1: there is nothing to play in it
+    "CREATE INDEX recordings_by_camera ON recordings (camera, begin);",
 };
 
 // Other programs may write rows: a time that differences would overflow with becomes 1970 or a far future.
@@ -65,7 +68,9 @@ std::string uri_of(const std::string& path) {
 
 constexpr char kSelect[] = "SELECT ", kFrom[] = ", id, keep FROM recordings";
 constexpr char kColumns[] =
-    "file, lines, picture, camera, event, part, begin, end, reason, tracks, kinds, rule, size, open";
+    "file, lines, picture, camera, event, part, begin, end, reason, tracks, kinds, rule, size, open, people, "
+    "broken";
+constexpr char kPlaces[] = "(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
 
 }  // namespace
 
@@ -99,7 +104,8 @@ class Index::Statement {
     bind(row.file).bind(row.lines).bind(row.picture).bind(row.camera);
     bind(std::int64_t{row.event}).bind(std::int64_t{row.part}).bind(row.begin.count()).bind(row.end.count());
     bind(row.reason).bind(row.tracks).bind(row.kinds).bind(row.rule);
-    return bind(static_cast<std::int64_t>(row.bytes)).bind(std::int64_t{row.open});
+    bind(static_cast<std::int64_t>(row.bytes)).bind(std::int64_t{row.open});
+    return bind(std::int64_t{row.people}).bind(std::int64_t{row.broken});
   }
 
  private:
@@ -240,8 +246,8 @@ std::string Index::migrate() {
 
 std::string Index::add(Recording& recording, bool& taken) {
   taken = false;
-  Statement insert(database_.get(), std::string("INSERT INTO recordings (") + kColumns +
-                                        ") VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+  Statement insert(database_.get(),
+                   std::string("INSERT INTO recordings (") + kColumns + ") VALUES " + kPlaces);
   const int result = insert.bind(recording).step();
   taken = result == SQLITE_CONSTRAINT_UNIQUE;
   if (result != SQLITE_DONE) return fault();
@@ -250,8 +256,8 @@ std::string Index::add(Recording& recording, bool& taken) {
 }
 
 std::string Index::update(Recording& recording) {
-  Statement change(database_.get(), std::string("UPDATE recordings SET (") + kColumns +
-                                        ") = (?,?,?,?,?,?,?,?,?,?,?,?,?,?) WHERE id = ? AND file = ?");
+  Statement change(database_.get(), std::string("UPDATE recordings SET (") + kColumns + ") = " + kPlaces +
+                                        " WHERE id = ? AND file = ?");
   if (change.bind(recording).bind(recording.id).bind(recording.file).step() != SQLITE_DONE) return fault();
   if (sqlite3_changes(database_.get()) > 0) return {};
   bool taken = false;
@@ -292,11 +298,32 @@ std::string Index::read(std::vector<Recording>& rows) {
   return collect(select, rows);
 }
 
-std::string Index::read_newest(std::string_view camera, std::size_t most, std::vector<Recording>& rows) {
+std::string Index::read_newest(const Wanted& wanted, std::vector<Recording>& rows) {
+  std::string where = " WHERE camera = ? AND broken = 0";
+  if (wanted.from) where += " AND begin >= ?";
+  if (wanted.until) where += " AND begin < ?";
+  if (!wanted.reason.empty()) where += " AND reason = ?";
+  if (wanted.kept) where += " AND keep <> 0";
+  if (wanted.below) where += " AND id < ?";
   Statement select(database_.get(),
-                   std::string(kSelect) + kColumns + kFrom + " WHERE camera = ? ORDER BY id DESC LIMIT ?");
-  select.bind(camera).bind(static_cast<std::int64_t>(most));
+                   std::string(kSelect) + kColumns + kFrom + where + " ORDER BY id DESC LIMIT ?");
+  select.bind(wanted.camera);
+  if (wanted.from) select.bind(wanted.from->count());
+  if (wanted.until) select.bind(wanted.until->count());
+  if (!wanted.reason.empty()) select.bind(wanted.reason);
+  if (wanted.below) select.bind(*wanted.below);
+  select.bind(static_cast<std::int64_t>(wanted.most));
   return collect(select, rows);
+}
+
+std::string Index::read_reasons(std::string_view camera, std::vector<std::string>& reasons) {
+  reasons.clear();
+  Statement select(database_.get(),
+                   "SELECT DISTINCT reason FROM recordings WHERE camera = ? AND broken = 0 ORDER BY reason");
+  select.bind(camera);
+  int result = SQLITE_DONE;
+  while ((result = select.step()) == SQLITE_ROW) reasons.push_back(select.text(0));
+  return result == SQLITE_DONE ? std::string() : fault();
 }
 
 std::string Index::read_one(std::int64_t id, std::vector<Recording>& rows) {
@@ -319,8 +346,10 @@ std::string Index::collect(Statement& select, std::vector<Recording>& rows) cons
     row.rule = select.text(11);
     row.bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(0, select.number(12)));
     row.open = select.number(13) != 0;
-    row.id = select.number(14);
-    row.keep = select.number(15) != 0;
+    row.people = static_cast<std::uint32_t>(select.number(14));
+    row.broken = select.number(15) != 0;
+    row.id = select.number(16);
+    row.keep = select.number(17) != 0;
   }
   return result == SQLITE_DONE ? std::string() : fault();
 }

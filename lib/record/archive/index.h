@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -29,8 +30,20 @@ struct Recording {
   std::string tracks, kinds;  // identities, kinds of object; parted by commas
   std::string rule;           // of the fusion
   std::uint64_t bytes = 0;    // of all its files
+  std::uint32_t people = 0;   // at once, as far as was judged by their size
   bool open = true;           // is being written, or was when the process ended
+  bool broken = false;        // its writer was cut off before there was anything to play
   bool keep = false;          // retention leaves it
+};
+
+// Which rows of a camera.
+struct Wanted {
+  std::string camera;
+  std::optional<Time> from, until;    // of their begin: `from` counts, `until` does not
+  std::string reason;                 // empty: every one
+  bool kept = false;                  // those alone that are to be kept
+  std::optional<std::int64_t> below;  // ids below this one: what follows a list whose last id it is
+  std::size_t most = 200;
 };
 
 class Index {
@@ -67,8 +80,10 @@ class Index {
   std::string set_keep(std::string_view file, bool keep);
   // Reads the rows by rising id.
   std::string read(std::vector<Recording>& rows);
-  // The newest rows of a camera, the newest first.
-  std::string read_newest(std::string_view camera, std::size_t most, std::vector<Recording>& rows);
+  // The newest rows of these, the newest first; never broken ones.
+  std::string read_newest(const Wanted& wanted, std::vector<Recording>& rows);
+  // What began the recordings of a camera, each once, in the order of letters.
+  std::string read_reasons(std::string_view camera, std::vector<std::string>& reasons);
   // The row of an id: one, or none.
   std::string read_one(std::int64_t id, std::vector<Recording>& rows);
 

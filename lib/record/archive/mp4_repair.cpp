@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "record/archive/mp4_repair.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -96,6 +97,9 @@ bool shorten(int fd, const Box& mdat, std::uint64_t end) {
 
 Mp4State repair_mp4(int fd) {
   struct stat about{};
+  // With O_APPEND pwrite() writes at the end on Linux.
+  const int flags = fcntl(fd, F_GETFL);
+  if (flags < 0 || fcntl(fd, F_SETFL, flags & ~O_APPEND) != 0) return Mp4State::failed;
   if (fstat(fd, &about) != 0) return Mp4State::failed;
   const auto file = static_cast<std::uint64_t>(about.st_size);
   std::optional<Box> mdat, hidden, torn;
@@ -108,10 +112,10 @@ Mp4State repair_mp4(int fd) {
     if (box->type == "hoov" && !hidden) hidden = hidden_moov(fd, at, file);
     at = box->end();
   }
-  if (!mdat) return Mp4State::sound;
+  if (!mdat) return Mp4State::broken;
   const bool extended = !hidden;
   if (extended) hidden = find_hidden_moov(fd, *mdat, file);
-  if (!hidden) return Mp4State::sound;
+  if (!hidden) return Mp4State::broken;
   if (torn && ftruncate(fd, static_cast<off_t>(torn->offset)) != 0) return Mp4State::failed;
   if (extended && !shorten(fd, *mdat, hidden->offset)) return Mp4State::failed;
   return write_at(fd, hidden->offset + 4, "moov", 4) ? Mp4State::repaired : Mp4State::failed;

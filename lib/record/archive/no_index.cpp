@@ -48,7 +48,10 @@ std::string Index::set_keep(std::string_view, bool) {
 std::string Index::read(std::vector<Recording>&) {
   return kNone;
 }
-std::string Index::read_newest(std::string_view, std::size_t, std::vector<Recording>&) {
+std::string Index::read_newest(const Wanted&, std::vector<Recording>&) {
+  return kNone;
+}
+std::string Index::read_reasons(std::string_view, std::vector<std::string>&) {
   return kNone;
 }
 std::string Index::read_one(std::int64_t, std::vector<Recording>&) {
