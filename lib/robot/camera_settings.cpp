@@ -316,11 +316,18 @@ std::string credential_path(TableReader& reader, const char* key, const std::str
 
 void read_encoder(TableReader& reader, std::initializer_list<std::string_view> codecs,
                   EncoderSettings& encoder) {
-  std::vector<std::string_view> elements;
+  std::vector<std::string_view> words, elements;
+  const auto accept = [&](std::string_view word, std::string_view element) {
+    words.push_back(word);
+    elements.push_back(element);
+  };
   for (const publish::Encoder& one : publish::encoders())
-    if (std::ranges::find(codecs, one.codec) != codecs.end()) elements.push_back(one.element);
+    if (std::ranges::find(codecs, one.codec) != codecs.end()) accept(one.element, one.element);
+  accept(kAnyH264, kAnyH264);
+  for (const publish::Encoder& one : publish::encoders())
+    if (std::ranges::find(codecs, one.codec) != codecs.end()) accept(one.name, one.element);
   std::size_t chosen = 0;
-  if (reader.choice("encoder", chosen, elements)) encoder.element = elements[chosen];
+  if (reader.choice("encoder", chosen, words)) encoder.element = elements[chosen];
   reader.whole("bitrate", encoder.bitrate, 50, 100000);
   if (reader.has("bitrate") && encoder.element == "jpegenc")
     reader.complain("bitrate", "\"bitrate\" is not for encoder = \"jpegenc\"");

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robot/mode.h"
@@ -52,9 +53,12 @@ struct SourceSettings {
   double start_pan = 0, start_tilt = 0;  // world: where the head looks at first, degrees
 };
 
+// In place of an element: the first of H.264 that works on the machine. The program puts an element there.
+inline constexpr std::string_view kAnyH264 = "h264";
+
 // How pictures are encoded that do not come encoded.
 struct EncoderSettings {
-  std::string element = "x264enc";  // of publish::encoders()
+  std::string element = "x264enc";  // of publish::encoders(), or kAnyH264
   int bitrate = 2000;               // kilobits a second
 
   bool operator==(const EncoderSettings&) const = default;

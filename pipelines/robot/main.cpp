@@ -8,6 +8,7 @@
 
 #if HAVE_PAGE
 #include "device_tokens.h"
+#include "encoder_choice.h"
 #endif
 #include "robot.h"
 #include "robot/settings_file.h"
@@ -83,6 +84,7 @@ int main(int argc, char** argv) {
     const gchar* credentials = g_getenv("CREDENTIALS_DIRECTORY");
     cerberus::robot::SettingsFile file = cerberus::robot::load_settings(path, credentials ? credentials : "");
     if (!file.settings) return file;
+    cerberus::robot::choose_encoders(*file.settings);
     cerberus::robot::Trial trial = cerberus::robot::try_settings(*file.settings);
     if (lacks != nullptr) *lacks = cerberus::robot::describe(std::move(trial.lacks), path);
     if (trial.mistakes.empty()) return file;

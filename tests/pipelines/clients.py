@@ -417,7 +417,7 @@ def test_cerberusd(program):
     """Its streams: the plain one is what its recorder writes."""
     pictures(MANY, paced=True)
     draw('motiondetect ! pirfusion ! motionoverlay crosshair=true')
-    for recorded, shown in (('x264enc', 'openh264enc'), ('openh264enc', 'x264enc'), ('jpegenc', 'vp8enc')):
+    for recorded, shown in (('h264', 'openh264'), ('openh264enc', 'h264'), ('jpegenc', 'vp8enc')):
         port, folder, encodings = free_port(), recorded, {'vp8enc': 'vp8', 'jpegenc': 'jpeg'}
         pathlib.Path('robot.toml').write_text(robot('scene.mkv', port, folder, recorded, shown), 'ascii')
         server = start([program, 'robot.toml'])

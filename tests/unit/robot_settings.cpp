@@ -209,6 +209,7 @@ START_TEST(every_mistake_is_reported_with_its_line) {
       {"[rtsp]\nmounts = []\n", "r.toml:2: \"mounts\" names none"},
       {"[rtsp]\ncertificate = \"c\"\n", "r.toml:2: \"certificate\" and \"certificate-key\" belong together"},
       {"[rtsp]\nencoder = \"theoraenc\"\n", "r.toml:2: \"encoder\" of [rtsp] is one of \"v4l2h264enc\""},
+      {"[rtsp]\nencoder = \"jpeg\"\nbitrate = 500\n", "r.toml:3: \"bitrate\" is not for"},
       {"[rtsp]\nencoder = \"jpegenc\"\nbitrate = 500\n",
        "r.toml:3: \"bitrate\" is not for encoder = \"jpegenc\""},
       {"[rtsp]\npasswort = \"x\"\n", "r.toml:2: unknown key \"passwort\" in [rtsp]"},
@@ -568,6 +569,18 @@ START_TEST(the_rtsp_server_listens_on_loopback_and_serves_both_pictures_unless_a
 }
 END_TEST
 
+START_TEST(an_encoder_is_named_by_its_element_or_as_in_the_list) {
+  for (const auto& [word, element] : {std::pair{"openh264enc", "openh264enc"},
+                                      {"openh264", "openh264enc"},
+                                      {"vp8", "vp8enc"},
+                                      {"jpeg", "jpegenc"},
+                                      {"h264", "h264"}}) {
+    const Settings all = settings("[rtsp]\nencoder = \"" + std::string(word) + "\"\n" + kSmallest);
+    ck_assert_str_eq(all.rtsp->encoder.element.c_str(), element);
+  }
+}
+END_TEST
+
 START_TEST(one_encoder_makes_the_plain_picture_of_the_recorder_and_of_all_clients) {
   const Settings all = settings("[rtsp]\nencoder = \"openh264enc\"\nbitrate = 800\n" + kSmallest +
                                 "[camera.recorder]\nfolder = \"rec\"\nbitrate = 3000\n");
@@ -648,6 +661,7 @@ int main() {
                          each_kind_of_camera_has_its_source_at_the_size_and_rate_that_are_asked_for,
                          what_a_network_camera_records_is_never_encoded_again,
                          the_rtsp_server_listens_on_loopback_and_serves_both_pictures_unless_asked_otherwise,
+                         an_encoder_is_named_by_its_element_or_as_in_the_list,
                          one_encoder_makes_the_plain_picture_of_the_recorder_and_of_all_clients,
                          another_configuration_is_the_properties_that_differ_or_another_pipeline,
                          a_part_is_tried_again_after_1_2_4_to_60_seconds_and_after_a_sound_minute_after_1});
