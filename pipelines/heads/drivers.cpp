@@ -10,6 +10,7 @@
 
 #include "drivers/helper/emergency_stop.h"
 #include "drivers/helper/helper_loop.h"
+#include "heads/one_program.h"
 #include "text/numbers.h"
 #if HAVE_GPIOD
 #include "drivers/gpio/gpio_port.h"
@@ -63,14 +64,14 @@ int serve(drivers::HeadDevice& turned, const Around& around) {
   drivers::InvertedHead inverted(turned, around.inverted);
   drivers::HeadDevice& device = around.inverted.any() ? inverted : turned;
   const std::string& emergency_stop = around.emergency_stop;
-  if (emergency_stop.empty()) return drivers::serve_head(0, 1, device);
+  if (emergency_stop.empty()) return drivers::serve_head(0, 1, device, give_up_place);
 #if HAVE_GPIOD
   const std::size_t sign = emergency_stop.rfind(':');
   if (sign == 0 || sign == emergency_stop.npos || sign + 1 == emergency_stop.size())
     return fail("emergency-stop=" + emergency_stop + ": name it as CHIP:LINE, gpiochip0:17");
   drivers::EmergencyStop guarded(device, std::make_unique<drivers::GpioPort>(emergency_stop.substr(0, sign)),
                                  emergency_stop.substr(sign + 1));
-  return drivers::serve_head(0, 1, guarded);
+  return drivers::serve_head(0, 1, guarded, give_up_place);
 #else
   return fail("emergency-stop needs libgpiod, which this build was made without");
 #endif

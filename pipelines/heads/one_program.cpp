@@ -38,41 +38,51 @@ long parent(long process) {
   return 0;
 }
 
-// " (process 1234)" of the program whose helper holds the place; empty: it is not known. Not of the helper itself: killing
-// that would leave a head turning.
-std::string holder(const Address& address) {
+// The process of the program whose helper holds the place; 0: it has given the place up or has ended, or is not known. Not
+// the helper itself: killing that would leave a head turning.
+long holder(const Address& address) {
   const int asking = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   ucred credentials{};
   socklen_t size = sizeof credentials;
   const bool known = ::connect(asking, address.get(), address.size) == 0 &&
                      ::getsockopt(asking, SOL_SOCKET, SO_PEERCRED, &credentials, &size) == 0;
   ::close(asking);
-  const long program = known ? parent(credentials.pid) : 0;
-  return program > 0 ? " (process " + std::to_string(program) + ")" : "";
+  return known ? parent(credentials.pid) : 0;
 }
+
+int held_socket = -1;  // of this process's place, as long as it is not given up
 
 }  // namespace
 
 std::string hold_place(const std::string& place, std::chrono::milliseconds patience) {
   if (place.empty()) return {};
   const Address address(place);
-  const auto end = std::chrono::steady_clock::now() + patience;
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
   const int held = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (held < 0) return std::string("no socket could be made: ") + std::strerror(errno);
   while (::bind(held, address.get(), address.size) != 0) {
     const int wrong = errno;
-    if (wrong == EADDRINUSE && std::chrono::steady_clock::now() < end) {
+    const long program = wrong == EADDRINUSE ? holder(address) : 0;
+    if (wrong == EADDRINUSE &&
+        Clock::now() - begin < (program > 0 ? std::min(patience, kMoment) : patience)) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
       continue;
     }
     ::close(held);
     if (wrong != EADDRINUSE)
       return "the head at " + place + " could not be reserved: " + std::strerror(wrong);
-    return "another program" + holder(address) + " drives the head at " + place +
-           " already: end it first; a head has one controller";
+    return "another program" + (program > 0 ? " (process " + std::to_string(program) + ")" : "") +
+           " drives the head at " + place + " already: end it first; a head has one controller";
   }
   ::listen(held, SOMAXCONN);  // so that the holder can be named; nothing is accepted
+  held_socket = held;
   return {};
+}
+
+void give_up_place() {
+  if (held_socket >= 0) ::shutdown(held_socket, SHUT_RDWR);  // holder() is refused from now on
+  held_socket = -1;
 }
 
 }  // namespace cerberus::heads

@@ -146,9 +146,26 @@ def test_one_program_drives_a_head_and_a_killed_one_frees_it():
             said = run([*camera, 'address=01'], stdin=subprocess.DEVNULL)[1]  # 1 is the usual address
         assert f'fault another program (process {os.getpid()}) drives the head at udp:127.0.0.1:9 address 1 ' \
             'already: end it first' in said, said
+        begin = time.monotonic()
+        run([*camera, 'address=01'], stdin=subprocess.DEVNULL)
+        assert time.monotonic() - begin < 3  # at once: a pipeline waits 5 s for a helper
         assert run([*camera, 'address=2'], stdin=subprocess.DEVNULL)[1] == ''
         first.kill()
     assert run(camera, stdin=subprocess.DEVNULL)[1] == ''
+
+
+def test_a_program_whose_pipeline_has_ended_is_waited_for():
+    far, near = pty.openpty()  # a camera that answers nothing: it is sent its stop for half a second
+    camera = [HELPER, 'visca', '--device=serial:' + os.ttyname(near), '--no-feedback']
+    with subprocess.Popen(camera, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL) as first:
+        first.stdin.write(b'cerberus-head 1 timeout 5 limits -170 170 -45 45 speed 90 90 acceleration 600 600 '
+                          b'start 0 0\n')
+        first.stdin.flush()
+        assert select.select([far], [], [], LIMIT)[0], 'the camera was sent nothing'
+        first.stdin.close()
+        assert run(camera, stdin=subprocess.DEVNULL)[1] == ''
+    os.close(near)
+    os.close(far)
 
 
 def messages_of(driver, line, is_one, *words):
@@ -195,5 +212,6 @@ def test_what_cannot_be_is_named():
 if not HAVE_VISCA:
     print('skipped: one program drives a head, inverted axes (this build has no driver visca)')
     del test_one_program_drives_a_head_and_a_killed_one_frees_it
+    del test_a_program_whose_pipeline_has_ended_is_waited_for
     del test_each_axis_of_each_driver_can_be_inverted
 all_tests(globals())

@@ -294,6 +294,25 @@ START_TEST(a_fifo_outlives_its_writers) {
 }
 END_TEST
 
+START_TEST(an_input_has_one_reader_and_the_second_one_is_told_which) {
+  Board board;
+  const std::string fifo = "/tmp/cerberus-fifo-" + std::to_string(::getpid()) + "-one";
+  ck_assert_int_eq(::mkfifo(fifo.c_str(), 0600), 0);
+  for (const std::string& device : {board.device(), fifo}) {
+    ExternalSensor first, second;
+    ck_assert(!first.open(at(device)));
+    const SensorError wrong = second.open(at(device));
+    ck_assert(wrong.fault == SensorFault::busy);
+    ck_assert_msg(
+        wrong.text.find("another program (process " + std::to_string(::getpid())) != std::string::npos, "%s",
+        wrong.text.c_str());
+    first.close();
+    ck_assert(!second.open(at(device)));
+  }
+  ::unlink(fifo.c_str());
+}
+END_TEST
+
 START_TEST(a_flood_is_read_piece_by_piece) {
   ExternalSensor sensor;
   open(sensor, running("exec yes levels 0 1 0"));
@@ -318,5 +337,6 @@ int main() {
        a_command_that_ends_is_started_again, closing_ends_the_command_and_what_it_runs,
        volts_are_compared_with_the_threshold_and_reported_where_asked, what_does_not_fit_together_is_refused,
        another_version_or_number_is_an_error_at_the_begin, a_damaged_line_later_changes_nothing,
-       a_fifo_outlives_its_writers, a_flood_is_read_piece_by_piece});
+       a_fifo_outlives_its_writers, an_input_has_one_reader_and_the_second_one_is_told_which,
+       a_flood_is_read_piece_by_piece});
 }

@@ -4,6 +4,7 @@
 
 #include <stdlib.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -231,6 +232,19 @@ START_TEST(a_chip_that_returns_without_its_channel_holds_up_nothing) {
 }
 END_TEST
 
+START_TEST(a_channel_has_one_program_and_the_second_one_is_told_which) {
+  const Chip chip;
+  ServoHead first(options(chip, "channel=0"));
+  assert_text(first.open(setup(), 0s), "");
+  const std::string wrong = ServoHead(options(chip, "channel=1", "channel=0")).open(setup(), 0s);
+  ck_assert_msg(wrong.find("channel 0 of the PWM chip " + chip.folder() +
+                           " (tilt) is driven by another program (process " + std::to_string(::getpid())) !=
+                    std::string::npos,
+                "%s", wrong.c_str());
+  assert_text(ServoHead(options(chip, "channel=1")).open(setup(), 0s), "");  // a chip has many
+}
+END_TEST
+
 START_TEST(limits_beyond_the_servo_and_a_missing_chip_are_named) {
   Chip chip;
   ServoHead head(options(chip, "channel=0 trim=2"));
@@ -264,5 +278,6 @@ int main() {
        a_stop_brakes_and_holds_and_the_end_gives_no_pulse,
        a_stop_does_not_bring_a_servo_back_within_limits_that_were_moved,
        a_chip_that_returns_without_its_channel_holds_up_nothing,
+       a_channel_has_one_program_and_the_second_one_is_told_which,
        limits_beyond_the_servo_and_a_missing_chip_are_named});
 }

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "drivers/helper/helper_loop.h"
+#include "drivers/pelco/pelco_head.h"
 #include "support/stepped_helper.h"
 #include "support/visca_camera.h"
 
@@ -545,6 +546,25 @@ START_TEST(what_cannot_be_opened_is_named) {
 }
 END_TEST
 
+START_TEST(a_serial_port_has_one_program_and_the_second_one_is_told_which) {
+  const ViscaCamera camera(ViscaCamera::Line::serial);
+  const std::string path = camera.device().substr(std::string("serial:").size());
+  PelcoOptions pelco;
+  pelco.device = camera.device();
+  const std::string here = "another program (process " + std::to_string(::getpid());
+  {
+    ViscaHead first(options_for(camera));
+    assert_text(first.open({}, 0s), "");
+    const std::string wrong = PelcoHead(pelco).open({}, 0s);
+    ck_assert_msg(wrong.starts_with("the serial port " + path +
+                                    " cannot be opened: Device or resource busy: " + here) &&
+                      wrong.ends_with(") has it open; end that first"),
+                  "%s", wrong.c_str());
+  }
+  assert_text(PelcoHead(pelco).open({}, 0s), "");  // it is free again
+}
+END_TEST
+
 int main() {
   Suite* suite = suite_create("visca_head");
   TCase* cases = tcase_create("visca_head");
@@ -582,7 +602,8 @@ int main() {
         a_camera_without_a_zoom_turns_and_stops_all_the_same,
         a_camera_is_driven_at_its_address_on_a_serial_line_and_no_other_is,
         answers_of_another_baud_rate_are_an_error_and_none_at_all_are_a_warning,
-        what_cannot_be_opened_is_named})
+        what_cannot_be_opened_is_named,
+        a_serial_port_has_one_program_and_the_second_one_is_told_which})
     tcase_add_test(cases, test);
   suite_add_tcase(suite, cases);
   SRunner* runner = srunner_create(suite);

@@ -14,6 +14,7 @@
 
 #include "drivers/helper/option_words.h"
 #include "drivers/helper/program_check.h"
+#include "drivers/transport/exclusive.h"
 #include "text/numbers.h"
 
 namespace cerberus::drivers {
@@ -28,7 +29,12 @@ SensorError open_fifo(const std::string& path, int& fd) {
   // Opened for both directions: the end of one writer is not the end of the input, and a poll does not spin on it.
   fd = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
   const int error = errno;
-  if (fd >= 0 && ::fstat(fd, &about) == 0 && S_ISFIFO(about.st_mode)) return {};
+  if (fd >= 0 && ::fstat(fd, &about) == 0 && S_ISFIFO(about.st_mode)) {
+    if (lock_device(fd) == 0) return {};
+    ::close(std::exchange(fd, -1));  // of two readers each would get some of the lines
+    return {SensorFault::busy, "The FIFO " + path + " is read by " + program_with(path) + ": end that first.",
+            errno_text(EBUSY)};
+  }
   if (fd >= 0) {
     ::close(std::exchange(fd, -1));
     return {SensorFault::settings,

@@ -25,11 +25,12 @@ class Loop {
   Loop(int in, int out, HeadDevice& device)
       : in_(in), out_(out), device_(device), server_(device, [this](std::string line) { send(line); }) {}
 
-  int run() {
+  int run(void (*ends)()) {
     while (!input_ended_ && !server_.ended()) {
       wait(server_.serve(now_is()));
       read();
     }
+    if (ends) ends();
     if (!server_.greeted() || server_.failed()) return 2;
     finish();
     return 0;
@@ -88,8 +89,8 @@ class Loop {
 
 }  // namespace
 
-int serve_head(int in, int out, HeadDevice& device) {
-  return Loop(in, out, device).run();
+int serve_head(int in, int out, HeadDevice& device, void (*ends)()) {
+  return Loop(in, out, device).run(ends);
 }
 
 }  // namespace cerberus::drivers

@@ -7,7 +7,8 @@
 
 namespace cerberus::drivers {
 
-// Serves until the end. in, out: descriptors of the socket. Returns the process's exit status.
-int serve_head(int in, int out, HeadDevice& device);
+// Serves until the end. in, out: descriptors of the socket. ends: called when the pipeline has ended; the head is then
+// stopped. Returns the process's exit status.
+int serve_head(int in, int out, HeadDevice& device, void (*ends)() = nullptr);
 
 }  // namespace cerberus::drivers

@@ -10,6 +10,8 @@
 #include <charconv>
 #include <thread>
 
+#include "drivers/transport/exclusive.h"
+
 namespace cerberus::drivers {
 namespace {
 
@@ -48,6 +50,10 @@ int PwmChannel::open(const std::string& chip, int channel, Time period, std::chr
     duty_ = ::open(step.c_str(), O_WRONLY | O_CLOEXEC);
   }
   if (duty_ < 0) return errno;
+  if (lock_device(duty_) != 0) {
+    close();
+    return EALREADY;
+  }
   int error = write_number(duty_, 0);  // a pulse longer than the new period would be refused
   if (error == 0) {
     step = folder + "/period";

@@ -20,7 +20,8 @@ class PwmChannel {
   PwmChannel& operator=(const PwmChannel&) = delete;
 
   // chip: the chip's folder. Exports the channel if need be and sets its period; no pulse is given yet. Waits up to
-  // `patience` for the rights that udev gives to a new channel. step: which file was refused.
+  // `patience` for the rights that udev gives to a new channel. step: which file was refused. EALREADY: another program
+  // drives the channel.
   int open(const std::string& chip, int channel, Time period, std::chrono::milliseconds patience,
            std::string& step);
   void close() noexcept;  // leaves the pulses as they are

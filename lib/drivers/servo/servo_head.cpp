@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "drivers/transport/exclusive.h"
 #include "text/numbers.h"
 
 namespace cerberus::drivers {
@@ -58,6 +59,8 @@ std::string ServoHead::open_axis(const char* name, Axis& axis, std::chrono::mill
     return "no permission to write " + step + ": add the user to the group gpio, or let a udev rule allow it";
   if (!std::filesystem::exists(options_.chip))
     return "there is no PWM chip " + options_.chip + ". " + chips();
+  if (error == EALREADY)
+    return what + " (" + name + ") is driven by " + program_with(step) + ": end that first";
   if (error == EBUSY) return what + " (" + name + ") is used by the kernel or has another period";
   return what + " (" + name + ") cannot be used (" + step + ": " + std::strerror(error) +
          "): has the chip that channel?";

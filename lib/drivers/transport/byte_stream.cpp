@@ -19,6 +19,8 @@
 #include <memory>
 #include <utility>
 
+#include "drivers/transport/exclusive.h"
+
 namespace cerberus::drivers {
 namespace {
 
@@ -45,7 +47,7 @@ std::string why_not(const std::string& path) {
   if (error == EACCES) text += " (its group is " + group_of(path) + ": add the user to it)";
   if (error == ENOENT || error == ENXIO || error == ENODEV)
     text += " (cerberus-heads list names those that are there)";
-  if (error == EBUSY) text += " (another program has it open)";
+  if (error == EBUSY) text += ": " + program_with(path) + " has it open; end that first";
   return text;
 }
 
@@ -74,9 +76,13 @@ std::string ByteStream::open_serial(const std::string& path, int baud) {
     close();
     return path + " is no serial port";
   }
-  if (::ioctl(fd_, TIOCEXCL) != 0) {
+  // The lock first: the kernel lets root open a port that is exclusive.
+  const int error = lock_device(fd_);
+  if (error != 0 || ::ioctl(fd_, TIOCEXCL) != 0) {
+    if (error != 0) errno = error;
     const std::string wrong = why_not(path);
     close();
+    errno = error;
     return wrong;
   }
   ::cfmakeraw(&mode);

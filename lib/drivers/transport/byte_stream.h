@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A connection to a device by address, never blocking after open():
 //
-//   serial:/dev/ttyUSB0            at the baud rate given, 8 data bits, no parity, one stop bit, opened exclusively
+//   serial:/dev/ttyUSB0            at the baud rate given, 8 data bits, no parity, one stop bit, for this program alone
 //   udp:192.0.2.7:52381            each write is one datagram
 //   tcp:[2001:db8::7]:5678
 //
