@@ -55,7 +55,7 @@ void HeadController::open(std::unique_ptr<drivers::HeadRunner> runner, const dri
   history_.clear();
   watchdog_.rest();
   manual_ = {};
-  faulty_ = silent_ = ended_ = homing_ = false;
+  faulty_ = silent_ = ended_ = homing_ = sees_turns_ = false;
   simulated_ = runner_->simulated();
   halted_ = fresh_ = true;
   latest_ = epoch_ = published_ = Time::zero();
@@ -175,7 +175,10 @@ void HeadController::order(drivers::HeadCommand command) {
 // Corrects the pose of a head that reports none by the turn of the picture, and looks for a lost reference.
 void HeadController::correct(const Frame& frame, Time now, DeferredNotifications& out) {
   if (frame.repeats) return;
-  const bool lost = correction_.lost();
+  // Where nothing measures the picture, the reckoning is all that there is, and the reference no more lost than at first.
+  sees_turns_ = sees_turns_ || (frame.motion && frame.lens.known());
+  const auto is_lost = [this] { return sees_turns_ && correction_.lost(); };
+  const bool lost = is_lost();
   const Pose ahead = history_.at(now + setup_.latency);
   const auto turn =
       frame.motion ? head_turn(*frame.motion, frame.lens, correction_.position().value_or(motion::PanTilt{}))
@@ -184,8 +187,8 @@ void HeadController::correct(const Frame& frame, Time now, DeferredNotifications
     confine_law();
     runner_->limit(now, correction_.limits(setup_.limits));
   }
-  homing_ = homing_ && correction_.lost() && now - home_tried_ < kHomePatience;
-  if (!correction_.lost() || (lost && now - home_tried_ < kHomePatience)) return;
+  homing_ = homing_ && is_lost() && now - home_tried_ < kHomePatience;
+  if (!is_lost() || (lost && now - home_tried_ < kHomePatience)) return;
   home_tried_ = now;
   homing_ = true;
   law_.reset();

@@ -133,6 +133,7 @@ class HeadController {
   bool clock_driven_ = false, halted_ = false, faulty_ = false, silent_ = false;
   bool simulated_ = true;       // the head's poses are exact
   bool homing_ = false;         // the head looks for its reference
+  bool sees_turns_ = false;     // frames have come whose picture's motion tells how the camera turned
   Time home_tried_{};           // when it began to
   bool ended_ = false;          // the stream
   Time latest_{}, epoch_{};     // head time of the last command; head time = running time + epoch

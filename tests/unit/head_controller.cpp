@@ -41,6 +41,8 @@ struct Record {
   std::string failure;  // returned by command()
   bool emergency = false;
   std::string refusal;  // returned by open()
+  int homes = 0;
+  bool simulated = true;
 };
 
 class RecordedHead : public drivers::Head {
@@ -64,7 +66,11 @@ class RecordedHead : public drivers::Head {
   }
   std::string state(Time time, Pose& pose) override { return head_->state(time, pose); }
   bool emergency() override { return record_->emergency; }
-  bool simulated() const override { return true; }
+  std::string home(Time) override {
+    ++record_->homes;
+    return {};
+  }
+  bool simulated() const override { return record_->simulated; }
   bool blocks() const override { return blocks_; }
 
  private:
@@ -86,6 +92,7 @@ struct Options {
   Time watchdog{};
   bool resumed = true;
   std::string refusal;
+  bool simulated = true;  // its poses are exact
 };
 
 // A controller with its head, and everything that it reports.
@@ -101,6 +108,7 @@ struct Rig {
 
   explicit Rig(const Options& options = {}) {
     record->refusal = options.refusal;
+    record->simulated = options.simulated;
     auto runner =
         std::make_unique<HeadRunner>(std::make_unique<RecordedHead>(record, options.blocks), nullptr);
     runner->open(options.setup, 10s);
@@ -868,6 +876,28 @@ START_TEST(a_manual_command_ends_with_a_fault) {
 }
 END_TEST
 
+// 100 degrees by hand, of which the picture shows nothing: it is dark, or nobody measures it.
+START_TEST(a_reference_is_lost_only_where_the_picture_is_measured) {
+  for (const bool measured : {false, true}) {
+    Options options;
+    options.clock_driven = true;
+    options.simulated = false;
+    Rig rig(options);
+    for (Time now = 0ms; now < 12s; now += 40ms) {
+      const double speed = now < 5s ? 20 : now < 8s ? -20 : 0;
+      if (speed != 0) rig.controller.turn(radians(speed), 0, now, rig.out);
+      rig.controller.tick(now, rig.out);
+      auto frame = Rig::empty(now);
+      if (measured) frame.motion.emplace().picture = {640, 480};
+      ck_assert(rig.controller.frame(frame, rig.out) == Answer::done);
+      rig.collect();
+    }
+    ck_assert_int_eq(rig.record->homes > 0, measured);
+    ck_assert_uint_eq(rig.warnings.size(), 0);
+  }
+}
+END_TEST
+
 START_TEST(a_head_that_cannot_be_opened_is_an_error_and_reported_once) {
   Options options;
   options.refusal = "no such port";
@@ -935,6 +965,7 @@ int main() {
                            a_turn_ends_after_500_ms_whatever_the_manual_timeout,
                            the_emergency_stop_takes_the_head_from_everybody_until_a_new_order,
                            a_manual_command_ends_with_a_fault,
+                           a_reference_is_lost_only_where_the_picture_is_measured,
                            a_head_that_cannot_be_opened_is_an_error_and_reported_once,
                            an_interrupted_frame_is_passed_again});
 }
