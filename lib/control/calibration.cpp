@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "text/numbers.h"
+
 namespace cerberus::control {
 namespace {
 
@@ -99,6 +101,54 @@ motion::SpeedMap AxisCalibration::speeds() const {
     if (rises) points.push_back({runs_[i].speed, sum / count});
   }
   return motion::SpeedMap(std::move(points));
+}
+
+void Spread::add(double value) {
+  least = runs == 0 ? value : std::min(least, value);
+  most = runs == 0 ? value : std::max(most, value);
+  ++runs;
+}
+
+std::string Spread::text(double unit, int decimals) const {
+  if (runs < 2) return std::to_string(runs) + (runs == 1 ? " run" : " runs");
+  std::string text = std::to_string(runs) + " runs, ";
+  text += text::rounded(least / unit, decimals).string_view();
+  text += " to ";
+  text += text::rounded(most / unit, decimals).string_view();
+  return text;
+}
+
+Spread AxisCalibration::speed_runs(double commanded) const {
+  Spread spread;
+  for (const Run& run : runs_)
+    if (run.measured && std::abs(run.speed) == commanded) spread.add(run.actual);
+  return spread;
+}
+
+Spread AxisCalibration::dead_time_runs() const {
+  Spread spread;
+  for (const Run& run : runs_)
+    if (run.measured && !run.reversal) spread.add(run.delay);
+  return spread;
+}
+
+Spread AxisCalibration::backlash_runs() const {
+  const double dead = dead_time();
+  Spread spread;
+  for (std::size_t i = 1; i < runs_.size(); ++i)
+    if (runs_[i].measured && runs_[i].reversal) spread.add((runs_[i].delay - dead) * runs_[i].actual);
+  return spread;
+}
+
+AxisCalibration::FarApart AxisCalibration::far_apart() const {
+  FarApart worst;
+  const motion::SpeedMap map = speeds();
+  for (const motion::SpeedPoint& point : map.points()) {
+    const Spread runs = speed_runs(point.commanded);
+    const double share = (runs.most - runs.least) / point.actual;
+    if (share > parameters_.far_apart && share > worst.share) worst = {point.commanded, share};
+  }
+  return worst;
 }
 
 double AxisCalibration::dead_time() const {

@@ -26,7 +26,19 @@ struct CalibrationParameters {
   double least = 1.1;    // seconds; a speed whose runs would be shorter is not measured
   double steady = 0.65;  // seconds from the command on; derived: a dead time of 500 ms and a ramp of 150 ms
   double pause = 0.9;    // seconds between runs; derived: the same dead time and ramp, and play that settles
+  // Share of their mean by which the runs of a speed may lie apart. derived: twice what noise of .05 degrees a frame does,
+  // and below what a wrong step of a speed table is. Guarded by unit-calibration.
+  double far_apart = 0.1;
   int least_frames = 5;  // in the steady part; derived: a line has two unknowns, and frames at 15 a second
+};
+
+// What the single runs of one quantity gave.
+struct Spread {
+  double least = 0, most = 0;
+  int runs = 0;
+  void add(double value);
+  // For a user, in units of `unit` and with so many decimals: "4 runs, 4.1 to 4.3".
+  std::string text(double unit, int decimals) const;
 };
 
 class AxisCalibration {
@@ -45,6 +57,16 @@ class AxisCalibration {
   motion::SpeedMap speeds() const;
   double dead_time() const;  // seconds
   double backlash() const;   // radians
+  // How far the runs lay apart that the numbers above are means of.
+  Spread speed_runs(double commanded) const;  // radians a second, of this commanded speed
+  Spread dead_time_runs() const;              // seconds
+  Spread backlash_runs() const;               // radians
+  // The speed (radians a second, as commanded) whose runs lie further apart than far_apart, and by which share of their
+  // mean; the worst one. 0: none do.
+  struct FarApart {
+    double commanded = 0, share = 0;
+  };
+  FarApart far_apart() const;
   // Where the picture has it now: radians from where the axis stood at first.
   double position() const { return position_; }
 

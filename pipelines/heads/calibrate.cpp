@@ -187,14 +187,30 @@ struct Session {
   }
 };
 
-void report(const drivers::HeadCalibration& found, control::TimeoutWatch::End trial) {
+// What was found of an axis, and how far its runs lay apart.
+void report_axis(const char* name, const AxisCalibration& axis) {
+  const double degree = radians(1);
+  const motion::SpeedMap speeds = axis.speeds();
+  if (speeds.points().empty()) return;
+  std::printf("%s dead time %.0f ms (%s), backlash %.2f degrees (%s)\n", name, axis.dead_time() * 1e3,
+              axis.dead_time_runs().text(1e-3, 0).c_str(), degrees(axis.backlash()),
+              axis.backlash_runs().text(degree, 2).c_str());
+  for (const auto& point : speeds.points())
+    std::printf("%s %5.1f is %6.2f degrees a second (%s)\n", name, degrees(point.commanded),
+                degrees(point.actual), axis.speed_runs(point.commanded).text(degree, 2).c_str());
+  if (const auto far = axis.far_apart(); far.commanded > 0)
+    std::printf(
+        "%s: the runs at %.1f degrees a second lie %.0f %% apart: something moved in the picture, it shows "
+        "too "
+        "little, or the head does not turn evenly; measure again\n",
+        name, degrees(far.commanded), far.share * 100);
+}
+
+void report(const drivers::HeadCalibration& found, const AxisCalibration& pan, const AxisCalibration& tilt,
+            control::TimeoutWatch::End trial) {
   using End = control::TimeoutWatch::End;
-  std::printf("dead time %.0f ms, backlash %.2f and %.2f degrees\n", motion::seconds(found.dead_time) * 1e3,
-              degrees(found.pan_backlash), degrees(found.tilt_backlash));
-  for (const auto* map : {&found.pan, &found.tilt})
-    for (const auto& point : map->points())
-      std::printf("%s %5.1f is %6.2f degrees a second\n", map == &found.pan ? "pan " : "tilt",
-                  degrees(point.commanded), degrees(point.actual));
+  report_axis("pan ", pan);
+  report_axis("tilt", tilt);
   if (found.stops_alone)
     std::printf("without its helper the head stopped after %.1f s\n", *found.stops_alone);
   else if (trial == End::none)
@@ -256,7 +272,7 @@ int calibrate_head(const ToolOptions& options) {
   found.dead_time = Time(static_cast<Time::rep>(pan.dead_time() * 1e9));
   found.pan_backlash = pan.backlash();
   found.tilt_backlash = tilt.backlash();
-  report(found, trial_end);
+  report(found, pan, tilt, trial_end);
   std::ofstream file(options.output, std::ios::binary);
   if (!(file << drivers::calibration_text(found)).flush()) return fail(options.output + " cannot be written");
   std::printf("written: %s (pantiltsink calibration=%s)\n", options.output.c_str(), options.output.c_str());

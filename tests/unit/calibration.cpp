@@ -33,6 +33,7 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 struct Known {
   double gain = 1;      // actual / commanded speed
+  double left = 1;      // and as much times that to the left
   double backlash = 0;  // degrees
   Time dead_time = 0ms;
   double noise = 0;     // degrees a frame
@@ -55,7 +56,7 @@ AxisCalibration measured(const Known& known, double reach = 60) {
     const auto speed = axis.command(now);
     if (!speed) break;
     const Kind kind = *speed == 0 ? Kind::hold : Kind::velocity;
-    assert_text(head.command({now, {kind, known.gain * *speed, 0}, {}}), "");
+    assert_text(head.command({now, {kind, known.gain * (*speed < 0 ? known.left : 1) * *speed, 0}, {}}), "");
     cerberus::motion::Pose pose;
     assert_text(head.state(now, pose), "");
     const double wrong = radians(noise(random));
@@ -97,6 +98,52 @@ START_TEST(noise_of_the_picture_is_averaged) {
   for (const auto& point : points) ck_assert_double_eq_tol(point.actual / point.commanded, 1.2, 0.06);
   ck_assert_double_eq_tol(axis.dead_time(), 0.2, 0.015);
   ck_assert_double_eq_tol(degrees(axis.backlash()), 0.4, 0.15);
+}
+END_TEST
+
+// A head whose turns to the left are slower by a quarter: each speed has two runs at v and two at .75 v.
+START_TEST(it_is_known_how_far_the_runs_lay_apart) {
+  const AxisCalibration even = measured({.gain = 0.8, .backlash = 0.6, .dead_time = 150ms});
+  const SpeedMap evenly = even.speeds();
+  ck_assert_uint_eq(evenly.points().size(), 4);
+  for (const auto& point : evenly.points()) {
+    const Spread runs = even.speed_runs(point.commanded);
+    ck_assert_int_eq(runs.runs, 4);
+    ck_assert_double_le(runs.least, point.actual);
+    ck_assert_double_ge(runs.most, point.actual);
+    ck_assert_double_lt(runs.most - runs.least, .01 * point.actual);
+  }
+  ck_assert_int_eq(even.dead_time_runs().runs, 8);
+  ck_assert_double_eq_tol(even.dead_time_runs().least, 0.15, 0.02);
+  ck_assert_double_eq_tol(even.dead_time_runs().most, 0.15, 0.02);
+  ck_assert_int_eq(even.backlash_runs().runs, 7);
+  ck_assert_double_eq_tol(degrees(even.backlash_runs().most), 0.6, 0.1);
+  ck_assert(even.far_apart().commanded == 0 && even.far_apart().share == 0);
+
+  const AxisCalibration uneven = measured({.left = 0.75});
+  const SpeedMap unevenly = uneven.speeds();
+  ck_assert_uint_eq(unevenly.points().size(), 4);
+  for (const auto& point : unevenly.points()) {
+    const Spread runs = uneven.speed_runs(point.commanded);
+    ck_assert_double_eq_tol(runs.most / point.commanded, 1, 0.01);
+    ck_assert_double_eq_tol(runs.least / point.commanded, 0.75, 0.01);
+    ck_assert_double_eq_tol(point.actual / point.commanded, 0.875, 0.01);
+  }
+  ck_assert_double_eq_tol(uneven.far_apart().share, .25 / .875, .02);
+  const AxisCalibration noisy =
+      measured({.gain = 1.2, .backlash = 0.4, .dead_time = 200ms, .noise = 0.05}, 90);
+  ck_assert_double_gt(noisy.dead_time_runs().most - noisy.dead_time_runs().least, 0.002);
+}
+END_TEST
+
+START_TEST(runs_are_named_with_their_ends) {
+  Spread spread;
+  assert_text(spread.text(1, 1), "0 runs");
+  spread.add(4.25);
+  assert_text(spread.text(1, 1), "1 run");
+  spread.add(4);
+  spread.add(-0.5);
+  assert_text(spread.text(.5, 1), "3 runs, -1 to 8.5");
 }
 END_TEST
 
@@ -338,7 +385,8 @@ int main() {
   return cerberus::tests::run_suite(
       "calibration",
       {table_dead_time_and_backlash_are_recovered, a_head_without_play_has_none,
-       noise_of_the_picture_is_averaged, what_cannot_be_measured_ends_with_the_reason,
+       noise_of_the_picture_is_averaged, it_is_known_how_far_the_runs_lay_apart,
+       runs_are_named_with_their_ends, what_cannot_be_measured_ends_with_the_reason,
        the_trial_of_the_device_s_own_timeout_stays_within_the_limits,
        a_head_without_its_helper_stops_goes_on_or_was_not_seen, frames_that_are_not_measured_are_no_rest,
        a_key_ends_the_trial_and_nothing_is_said_of_the_head,
