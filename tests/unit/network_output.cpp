@@ -253,6 +253,9 @@ START_TEST(boxes_of_yolox_are_decoded_and_its_pictures_have_values_to_255) {
   ck_assert_double_eq_tol(raw.hits[0].box.width, 16, 1e-4);
   ck_assert_double_eq_tol(raw.hits[0].box.height, 32, 1e-4);
   ck_assert(raw.takes_bytes);
+  for (auto& row : rows) row[2] = row[3] = .4f;  // none is smaller than its cell
+  ck_assert_uint_eq(read({with_batch(rows_of(rows))}).hits.size(), 1);
+  ck_assert_double_eq_tol(read({with_batch(rows_of(rows))}).hits[0].box.width, 16 * std::exp(.4), 1e-4);
   const Output decoded = with_batch(rows_of(yolo(kCells, 80, true)));
   expect_person("decoded", {decoded});
   ck_assert(read({decoded}).takes_bytes);
@@ -284,7 +287,10 @@ START_TEST(what_cannot_be_read_is_refused_with_its_shape_and_the_reason) {
   rows = end_to_end(300);
   for (auto& row : rows) row[5] += .5f;
   expect_refused("six numbers without a class", {with_batch(rows_of(rows))}, "no probabilities");
-  expect_refused("five or six numbers and classes", {with_batch(rows_of(yolo(300, 7, true)))}, "labels=");
+  expect_refused("five or six numbers and classes", {with_batch(rows_of(yolo(300, 7, true)))},
+                 "name all of them with labels=");
+  expect_refused("labels that do not fit", {with_batch(rows_of(yolo(300, 7, true)))},
+                 "12 numbers, which are not 4 or 5 and the 80 classes", {.number = 0, .classes = 80});
   expect_refused("two classes, or one and an object", {with_batch(rows_of(yolo(kCells, 2, false)))},
                  "labels=");
   expect_refused("labels of another network", {with_batch(transposed(rows_of(yolo(kCells, 20, false))))},

@@ -231,10 +231,11 @@ class Decision {
     layout_.box = Box::middle, layout_.class_column = -1;
     const auto object = has_object_score(table);
     if (!object)
-      return refuse(
-          "holds " + std::to_string(table.numbers) +
-          " numbers a box, with or without a score that there is an object: name its classes, all of "
-          "them, with labels=");
+      return refuse("a box has " + std::to_string(table.numbers) + " numbers, " +
+                    (person_.classes > 0
+                         ? "which are not 4 or 5 and the " + std::to_string(person_.classes) +
+                               " classes that the labels name"
+                         : "which may be 4 or 5 and the classes: name all of them with labels="));
     layout_.object_score = *object ? kBox : -1;
     layout_.in_shares = is_in_shares(table, 0);
     if (!choose_class(kBox + *object, table.numbers - kBox - *object, 0)) return false;
@@ -250,7 +251,7 @@ class Decision {
     const bool of_yolox = *object && !certain && cells_of(input_, table.boxes);
     layout_.takes_bytes = of_yolox;
     const double reach = kFarthestOffset * std::max(input_.width, input_.height);
-    if (of_yolox && (sizeless > 0 || (!layout_.in_shares && farthest < reach)))
+    if (of_yolox && (sizeless > 0 || farthest < reach))
       layout_.box = Box::cells, layout_.in_shares = false;
     else if (2 * sizeless > boxes)
       return refuse("boxes have no size: export it with its boxes decoded");
