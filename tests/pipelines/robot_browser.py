@@ -172,6 +172,7 @@ def owner_visits(driver, port, one_time, folder, robot):
         assert 'good' in page.one('word').get_attribute('class')
     two_tabs(driver, page, port)
     events(driver, page, robot)
+    many_events(driver, page, robot, folder)
     stranger(driver, page, port)
     driver.find_element(By.CSS_SELECTOR, '[data-mode=privacy]').click()
     page.wait('privacy', lambda: 'Privacy' in page.one('veil').text and 'off' in page.status())
@@ -333,6 +334,50 @@ def events(driver, page, robot):
     page.one('filter-kept').click()
 
 
+def many_events(driver, page, robot, folder):
+    """The filters ask the index, of which the page shows a part; events appear and end by themselves."""
+    items = lambda: [one.text for one in driver.find_elements(By.CSS_SELECTOR, '#strip li')]
+    choose = lambda what, value: driver.execute_script(
+        "arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('change'))", page.one(what), value)
+    noon = lambda month, day: int(time.mktime((2026, month, day, 12, 0, 0, 0, 0, -1))) * 10**9
+    with sqlite3.connect(robot / 'recordings' / 'recordings.sqlite', timeout=PATIENCE) as database:
+        for number in range(600):
+            old = number < 3
+            begin = noon(1, 5) if old else noon(2, 6) + number * 10**9
+            database.execute(
+                'insert into recordings (file, camera, event, begin, end, reason, kinds, people, size, open, keep) values '
+                "(?, 'front', ?, ?, ?, ?, ?, ?, 1000, 0, ?)",
+                (f'many/{number}.mkv', number, begin, begin + 14 * 10**9, f'track {number}', 'person-like' if old else 'part',
+                 2 if old else 0, number == 1))
+    database.close()
+    page.one('reload').click()
+    page.wait('the newest 50', lambda: len(items()) == 50 and page.one('older').is_displayed())
+    assert not any(re.search('track [0-9]', one) for one in items()) and items()[0].startswith('Movement, 14 s'), items()[0]
+    page.one('older').click()
+    page.wait('older ones', lambda: len(items()) == 100)
+    choose('filter-day', '2026-01-05')
+    page.wait('the events of a day', lambda: len(items()) == 3 and not page.one('older').is_displayed())
+    assert all(one.startswith('2 people, 14 s') for one in items()), items()
+    driver.execute_script("document.getElementById('strip').scrollIntoView()")
+    driver.save_screenshot(str(folder / 'events.png'))
+    save = driver.find_element(By.CSS_SELECTOR, '#strip a').get_attribute('download')
+    assert save == 'front_2026-01-05_12-00-00.mkv', save
+    page.one('filter-kept').click()
+    page.wait('the kept one of that day', lambda: len(items()) == 1 and 'kept' in items()[0])
+    choose('filter-day', '2026-01-06')
+    page.wait('a day without events', lambda: items() == ['No event is like that.'])
+    choose('filter-day', '')
+    page.wait('the kept one of all', lambda: len(items()) == 1 and '2 people' in items()[0])
+    page.one('filter-kept').click()
+    driver.find_element(By.CSS_SELECTOR, '[data-mode=armed]').click()
+    page.wait('an event that begins', lambda: 'being recorded' in items()[0])
+    driver.find_element(By.CSS_SELECTOR, '[data-mode=disarmed]').click()
+    page.wait('its end', lambda: items() and not any('being recorded' in one for one in items()))
+    with sqlite3.connect(robot / 'recordings' / 'recordings.sqlite', timeout=PATIENCE) as database:
+        database.execute("delete from recordings where file like 'many/%'")
+    database.close()
+
+
 def stranger(driver, page, port):
     """Cookies do not tell ports apart: only its origin tells that a page is none of the robot's."""
     Stranger.port = port
@@ -355,7 +400,7 @@ def stranger(driver, page, port):
 
 def severe(driver):
     return [entry for entry in driver.get_log('browser') if entry['level'] == 'SEVERE'
-            and '/events' not in entry['message'] and '/login' not in entry['message']]
+            and '/events' not in entry['message'] and '/reasons' not in entry['message'] and '/login' not in entry['message']]
 
 
 def key(driver, kind, name, code, **more):

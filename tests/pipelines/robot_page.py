@@ -163,7 +163,7 @@ def statuses(page, expected):
 
 
 ROUTES = [('GET', '/log', None), ('GET', '/picture/front', None), ('POST', '/picture', (('camera', 'front'),)),
-          ('GET', '/events', None), ('GET', '/events/front/1/video', None), ('GET', '/socket', None),
+          ('GET', '/events', None), ('GET', '/reasons', None), ('GET', '/events/front/1/video', None), ('GET', '/socket', None),
           ('POST', '/keep', (('camera', 'front'), ('id', '1'))), ('POST', '/delete', (('camera', 'front'), ('id', '1'))),
           ('POST', '/password', (('user', 'owner'), ('password', 'another one'))), ('POST', '/logout', None)]
 
@@ -531,6 +531,17 @@ def recordings(owner, operator, viewer, folder):
     assert operator.ask('POST', '/keep', form | {'keep': '1'})[0] == 200
     assert [row['keep'] for row in json.loads(viewer.ask('GET', '/events?camera=front')[2])
             if str(row['id']) == identity] == [True]
+    # What is asked of the list, the index answers.
+    ask = lambda words: [str(row['id']) for row in json.loads(viewer.ask('GET', f'/events?camera=front&{words}')[2])]
+    everything = ask('')
+    assert ask('kept=1') == [identity] and ask('kept=1&reason=nothing') == []
+    assert ask('most=1') == everything[:1] and ask(f'below={everything[0]}&most=200') == everything[1:]
+    row = next(row for row in rows if str(row['id']) == identity)
+    assert identity in ask(f'from={row["begin"]}&until={row["begin"] + 1}') and identity not in ask(f'until={row["begin"]}')
+    reasons = json.loads(viewer.ask('GET', '/reasons?camera=front')[2])
+    assert 'track' in reasons and everything and all(ask(f'reason={reason}') for reason in reasons), reasons
+    saved = time.strftime('front_%Y-%m-%d_%H-%M-%S.mkv', time.localtime(row['begin'] // 1000))
+    assert row['name'] == saved and saved in viewer.ask('GET', video)[1]['Content-Disposition'], (row, saved)
     assert operator.ask('POST', '/delete', form)[0] == 403 and viewer.ask('POST', '/delete', form)[0] == 403
     assert owner.ask('POST', '/delete', form)[0] == 200
     assert viewer.ask('GET', f'/events/front/{identity}/video')[0] == 404

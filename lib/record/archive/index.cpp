@@ -66,6 +66,8 @@ std::string uri_of(const std::string& path) {
   return uri;
 }
 
+// "track 7": the numbers of tracks are many.
+constexpr char kReason[] = "rtrim(rtrim(reason, '0123456789'), ' ')";
 constexpr char kSelect[] = "SELECT ", kFrom[] = ", id, keep FROM recordings";
 constexpr char kColumns[] =
     "file, lines, picture, camera, event, part, begin, end, reason, tracks, kinds, rule, size, open, people, "
@@ -302,7 +304,7 @@ std::string Index::read_newest(const Wanted& wanted, std::vector<Recording>& row
   std::string where = " WHERE camera = ? AND broken = 0";
   if (wanted.from) where += " AND begin >= ?";
   if (wanted.until) where += " AND begin < ?";
-  if (!wanted.reason.empty()) where += " AND reason = ?";
+  if (!wanted.reason.empty()) where += std::string(" AND ") + kReason + " = ?";
   if (wanted.kept) where += " AND keep <> 0";
   if (wanted.below) where += " AND id < ?";
   Statement select(database_.get(),
@@ -318,8 +320,10 @@ std::string Index::read_newest(const Wanted& wanted, std::vector<Recording>& row
 
 std::string Index::read_reasons(std::string_view camera, std::vector<std::string>& reasons) {
   reasons.clear();
-  Statement select(database_.get(),
-                   "SELECT DISTINCT reason FROM recordings WHERE camera = ? AND broken = 0 ORDER BY reason");
+  Statement select(
+      database_.get(),
+      std::string(kSelect) + "DISTINCT " + kReason +
+          " AS what FROM recordings WHERE camera = ? AND broken = 0 AND what <> '' ORDER BY what");
   select.bind(camera);
   int result = SQLITE_DONE;
   while ((result = select.step()) == SQLITE_ROW) reasons.push_back(select.text(0));

@@ -40,7 +40,7 @@ struct Recording {
 struct Wanted {
   std::string camera;
   std::optional<Time> from, until;    // of their begin: `from` counts, `until` does not
-  std::string reason;                 // empty: every one
+  std::string reason;                 // as of read_reasons(); empty: every one
   bool kept = false;                  // those alone that are to be kept
   std::optional<std::int64_t> below;  // ids below this one: what follows a list whose last id it is
   std::size_t most = 200;
@@ -82,7 +82,7 @@ class Index {
   std::string read(std::vector<Recording>& rows);
   // The newest rows of these, the newest first; never broken ones.
   std::string read_newest(const Wanted& wanted, std::vector<Recording>& rows);
-  // What began the recordings of a camera, each once, in the order of letters.
+  // What began the recordings of a camera, without the numbers of tracks, each once, in the order of letters.
   std::string read_reasons(std::string_view camera, std::vector<std::string>& reasons);
   // The row of an id: one, or none.
   std::string read_one(std::int64_t id, std::vector<Recording>& rows);

@@ -144,11 +144,11 @@ function onReport(report) {
   if (report.number) {
     send(`seen ${report.number}`);
     const before = state && state.mode;
-    const wasRecording = state && isRecording();
+    const recorded = state && state.events;
     state = report;
     showState();
     showFleet();
-    if (before !== state.mode || (wasRecording && !isRecording())) loadEvents();
+    if (before !== state.mode || recorded !== state.events) loadEvents();
   }
 }
 
@@ -165,7 +165,7 @@ function choose(name) {
   send(`camera ${name}`);
   enableButtons();
   if (state) showState();
-  loadEvents();
+  loadEvents(kPage);
 }
 at('camera').addEventListener('change', () => choose(at('camera').value));
 window.addEventListener('hashchange', async () => {
@@ -621,30 +621,94 @@ function drawRadar() {
 
 // ---- events
 
-async function loadEvents() {
-  const response = await fetch(`/events?camera=${encodeURIComponent(cameraName)}`);
-  events = response.ok ? await response.json() : [];
-  eventsFault = response.ok ? '' : await response.text();
-  const reasons = [...new Set(events.map((event) => event.reason))].sort(), chosen = at('filter-reason').value;
-  at('filter-reason').replaceChildren(new Option('all', ''), ...reasons.map((reason) => new Option(reason)));
-  at('filter-reason').value = reasons.includes(chosen) ? chosen : '';
-  showEvents();
-}
+let events = [], eventsFault = '', moreEvents = false, loads = 0;
+const kPage = 50;       // events that are shown at once
+const kMostRows = 200;  // of one answer
 
-let events = [], eventsFault = '';
-
-function showEvents() {
-  const day = at('filter-day').value, reason = at('filter-reason').value, kept = at('filter-kept').checked;
-  const isOf = (event) => new Date(event.begin).toLocaleDateString('sv') === day;  // as the field has it
-  const list = events.filter((event) => (!day || isOf(event)) && (!reason || event.reason === reason) && (!kept || event.keep));
-  at('strip').replaceChildren(...list.map(eventItem));
-  if (!list.length) {
-    const item = document.createElement('li');
-    item.textContent = eventsFault || (events.length ? 'No event is like that.' : 'No event was recorded yet.');
-    at('strip').append(item);
+function filterWords() {
+  const words = {camera: cameraName}, day = at('filter-day').value;
+  if (day) {
+    const next = new Date(`${day}T00:00`);
+    words.from = next.getTime();
+    next.setDate(next.getDate() + 1);  // 23 or 25 hours where clocks change
+    words.until = next.getTime();
   }
+  if (at('filter-reason').value) words.reason = at('filter-reason').value;
+  if (at('filter-kept').checked) words.kept = 1;
+  return words;
 }
-for (const id of ['filter-day', 'filter-reason', 'filter-kept']) at(id).addEventListener('change', showEvents);
+
+// As many as are shown already, or so many.
+async function loadEvents(most = Math.max(kPage, events.length)) {
+  const load = ++loads, words = filterWords(), found = [];
+  let fault = '', whole = false;
+  while (!fault && !whole && found.length <= most) {
+    const asked = Math.min(kMostRows, most + 1 - found.length);  // one more tells whether there are more
+    const below = found.length ? {below: found[found.length - 1].id} : {};
+    const response = await fetch(`/events?${new URLSearchParams({...words, ...below, most: asked})}`);
+    const rows = response.ok ? await response.json() : [];
+    if (!response.ok) fault = await response.text();
+    found.push(...rows);
+    whole = rows.length < asked;
+  }
+  const answer = fault ? null : await fetch(`/reasons?${new URLSearchParams({camera: cameraName})}`);
+  const reasons = answer && answer.ok ? await answer.json() : [];
+  if (load !== loads) return;  // another one began meanwhile
+  events = found.slice(0, most);
+  moreEvents = found.length > most;
+  eventsFault = fault;
+  showReasons(reasons);
+  showEvents(Object.keys(words).length > 1);
+}
+
+const kReasons = {track: 'movement', motion: 'movement', pir: 'a sensor'};
+
+function showReasons(reasons) {
+  const select = at('filter-reason'), chosen = select.value;
+  if (chosen && !reasons.includes(chosen)) reasons.push(chosen);
+  if ([...select.options].slice(1).map((option) => option.value).join('\n') === reasons.join('\n')) return;
+  select.replaceChildren(new Option('all', ''), ...reasons.map((reason) => new Option(kReasons[reason] || reason, reason)));
+  select.value = chosen;
+}
+
+// Items that are as before stay where they are: the list keeps its place, and a button the focus.
+function showEvents(filtered) {
+  const list = at('strip'), before = new Map([...list.children].map((item) => [item.dataset.is, item]));
+  const items = events.map((event) => {
+    const is = JSON.stringify([event, hello.role]), item = before.get(is) || eventItem(event);
+    item.dataset.is = is;
+    return item;
+  });
+  if (!items.length) {
+    const item = document.createElement('li');
+    item.textContent = eventsFault || (filtered ? 'No event is like that.' : 'No event was recorded yet.');
+    items.push(item);
+  }
+  const stay = new Set(items);
+  for (const item of [...list.children]) if (!stay.has(item)) item.remove();
+  items.forEach((item, k) => { if (list.children[k] !== item) list.insertBefore(item, list.children[k] || null); });
+  at('older').hidden = !moreEvents;
+}
+for (const id of ['filter-day', 'filter-reason', 'filter-kept']) at(id).addEventListener('change', () => loadEvents(kPage));
+at('older').addEventListener('click', () => loadEvents(events.length + kPage));
+
+// What happened, and how long it took.
+function nameOf(event) {
+  const kinds = event.kinds ? event.kinds.split(',') : [], words = [];
+  if (event.people > 0) {
+    const people = event.people === 1 ? '1 person' : `${event.people} people`;
+    words.push(kinds.includes('group') ? `${event.people} or more people` : people);
+  }
+  if (kinds.includes('thing')) words.push(words.length ? 'something else' : 'something that moves');
+  if (!words.length && kinds.length) words.push('movement');
+  const reason = event.reason.replace(/ *[0-9]+$/, '');
+  if (!words.length) words.push(kReasons[reason] || reason || 'an event');
+  if (event.part > 1) words.push(`part ${event.part}`);
+  const seconds = Math.max(0, Math.round((event.end - event.begin) / 1000));
+  const length = seconds < 60 ? `${seconds} s` : `${Math.floor(seconds / 60)} min ${seconds % 60} s`;
+  const name = `${words.join(', ')}, ${event.open ? 'being recorded' : length}`;
+  return name[0].toUpperCase() + name.slice(1);
+}
 
 function button(text, label, on) {
   const made = document.createElement('button');
@@ -657,28 +721,29 @@ function button(text, label, on) {
 
 function eventItem(event) {
   const item = document.createElement('li');
-  const when = new Date(event.begin).toLocaleString(), address = `/events/${event.camera}/${event.id}`;
+  const when = new Date(event.begin).toLocaleString(), name = nameOf(event);
+  const address = `/events/${encodeURIComponent(event.camera)}/${event.id}`;
   if (event.picture && !event.open) {
     const image = document.createElement('img');
     image.loading = 'lazy';
     image.src = `${address}/picture`;
-    image.alt = `${event.reason}, ${when}`;
+    image.alt = `${name}, ${when}`;
     item.append(image);
   } else {
     const blank = document.createElement('span');
     blank.className = 'blank';
     item.append(blank);
   }
-  const length = Math.max(0, (event.end - event.begin) / 1000).toFixed(0);
-  const text = document.createElement('div');
-  text.textContent = `${when}, ${event.open ? 'being recorded' : `${length} s`}, ${event.reason}${event.keep ? ', kept' : ''}`;
+  const title = document.createElement('strong'), text = document.createElement('div');
+  title.textContent = name;
+  text.textContent = `${when}${event.keep ? ', kept' : ''}`;
   const buttons = document.createElement('div');
   buttons.className = 'buttons';
   if (!event.open) {
-    buttons.append(button('Play', `Play ${when}`, () => play(address)));
+    buttons.append(button('Play', `Play ${name}, ${when}`, () => play(address, event.name)));
     const save = document.createElement('a');
     save.href = `${address}/video`;
-    save.download = '';
+    save.download = event.name;
     save.textContent = 'Download';
     save.setAttribute('aria-label', `Download ${when}`);
     buttons.append(save);
@@ -689,7 +754,7 @@ function eventItem(event) {
       buttons.append(button('Delete', `Delete ${when}`, () =>
         confirm(`Delete the recording of ${when}?`) && change('/delete', event, {})));
   }
-  item.append(text, buttons);
+  item.append(title, text, buttons);
   return item;
 }
 
@@ -699,9 +764,10 @@ async function change(path, event, more) {
   loadEvents();
 }
 
-function play(address) {
+function play(address, name) {
   at('video').src = `${address}/video`;
   at('download').href = `${address}/video`;
+  at('download').download = name;
   at('player').showModal();
 }
 at('shut').addEventListener('click', () => at('player').close());
@@ -709,6 +775,6 @@ at('player').addEventListener('close', () => {
   at('video').removeAttribute('src');
   at('video').load();
 });
-at('reload').addEventListener('click', loadEvents);
+at('reload').addEventListener('click', () => loadEvents());
 
 enter();
