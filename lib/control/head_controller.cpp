@@ -558,10 +558,11 @@ bool HeadController::automatic(std::optional<Time> at, DeferredNotifications& ou
   return true;
 }
 
-bool HeadController::follow(std::uint32_t id, std::optional<Time> at, DeferredNotifications& out) {
+bool HeadController::follow(std::uint32_t id, std::optional<Time> at, DeferredNotifications& out,
+                            bool decided) {
   const std::lock_guard guard(lock_);
   if (!runner_ || ended_ || id == 0 || manual_.authority() == Authority::emergency_stop) return false;
-  selector_.follow(id);
+  selector_.follow(id, decided);
   law_.reset();  // another target
   end_manual("a track was chosen", at, out);
   return true;

@@ -84,8 +84,8 @@ class HeadController {
   bool turn(double pan, double tilt, std::optional<Time> now, DeferredNotifications& out);
   bool stop(std::optional<Time> now, DeferredNotifications& out);
   bool automatic(std::optional<Time> now, DeferredNotifications& out);
-  // Chooses the track to follow while it lives; ends a manual override. 0 is refused.
-  bool follow(std::uint32_t id, std::optional<Time> now, DeferredNotifications& out);
+  // Chooses the track to follow while it lives; ends a manual override. 0 is refused. decided: as of TargetSelector.
+  bool follow(std::uint32_t id, std::optional<Time> now, DeferredNotifications& out, bool decided = false);
 
   // Interrupts waiting calls, as HeadRunner::interrupt().
   void interrupt(bool on);

@@ -42,6 +42,7 @@ void TargetSelector::apply_override(const Observation& frame, motion::Time time,
   const fusion::TargetOverride::Answer answer = override_.watch(middle.has_value(), time);
   if (answer == lost) selection.lost = id;
   following_ = answer == here;
+  if (decided_elsewhere_ && frame.fusion) return;
   if (following_) {
     selection.goal = {.action = fusion::Action::track, .target = middle};
     selection.reason = "follows the chosen track " + std::to_string(id);

@@ -37,8 +37,12 @@ class TargetSelector {
   void set_options(const fusion::FuserOptions& options) { fuser_.set_options(options); }
   // Clears time and tracks for a new stream. The chosen track stays.
   void reset();
-  // Chooses the track to follow; 0: the automatic choice.
-  void follow(std::uint32_t id) { override_.choose(id); }
+  // Chooses the track to follow; 0: the automatic choice. decided: the decisions on the frames take the choice into
+  // account, and begin and end it there; without a decision on the frame it is made here all the same.
+  void follow(std::uint32_t id, bool decided = false) {
+    override_.choose(id);
+    decided_elsewhere_ = decided;
+  }
   // Returns the selection for a frame. time: its running time; pan: the head's pan when it was taken, radians.
   Selection on_frame(const Observation& frame, motion::Time time, double pan);
   // Processes a decision between two frames as if the last frame had carried it. It takes precedence over frames that
@@ -53,6 +57,7 @@ class TargetSelector {
   fusion::TargetOverride override_;
   std::optional<FusionDecision> between_;  // newer than the last frame's
   std::optional<fusion::Time> decided_;    // of the last decision in force; nullopt: the last frame had none
+  bool decided_elsewhere_ = false;         // the choice, by the decisions on the frames
   bool following_ = false;                 // the chosen track was on the last frame
 };
 

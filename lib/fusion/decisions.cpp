@@ -7,6 +7,7 @@ namespace cerberus::fusion {
 namespace {
 
 // Tracks that are older than this decide nothing between two frames.
+constexpr std::string_view kChosen = "chosen";
 constexpr Time kBetween = std::chrono::seconds(1);
 
 }  // namespace
@@ -22,6 +23,25 @@ void Decisions::configure(const FuserOptions& options, const RuleTable& table) {
   fuser_.set_options(options);
 }
 
+void Decisions::choose(std::uint32_t track) {
+  const std::lock_guard guard(lock_);
+  choice_.choose(track);
+  if (track == 0) chosen_ = TargetOverride::Answer::none;
+}
+
+// While the chosen track is awaited a sensor's turn goes on: it may lead to it.
+void Decisions::apply_choice(Decision& decision) const {
+  const bool here = chosen_ == TargetOverride::Answer::here;
+  const bool awaited = chosen_ == TargetOverride::Answer::awaited;
+  if (!here && !(awaited && decision.action == Action::track)) return;
+  decision.action = here ? Action::track : Action::hold;
+  decision.rule = 0;
+  decision.rule_name = kChosen;
+  decision.target = here ? choice_.id() : 0;
+  decision.sector = {kUnknown, kUnknown};
+  decision.limited = false;
+}
+
 Interval Decisions::limits() const {
   const std::lock_guard guard(lock_);
   return fuser_.options().limits;
@@ -29,6 +49,7 @@ Interval Decisions::limits() const {
 
 void Decisions::restart() {
   fuser_.reset();
+  choice_.restart();
   last_.reset();
   sensor_time_ = Time::zero();
 }
@@ -47,6 +68,8 @@ void Decisions::forget() {
   const std::lock_guard guard(lock_);
   restart();
   fuser_ = {};
+  choice_.choose(0);
+  chosen_ = TargetOverride::Answer::none;
   changes_.clear();
 }
 
@@ -66,10 +89,18 @@ Decisions::Outcome Decisions::decide(const Frame& frame, Time at) {
                                  .base_yaw_rate = sensing::radians(snapshot.base_degrees),
                                  .lens = snapshot.lens}),
                   snapshot, sensor_time_};
+  Decision& decision = outcome.decision;
+  apply_choice(decision);
+  const auto of_choice = [](const Decision& one) { return one.rule_name == kChosen; };
+  // The rules' own changes behind the choice are none.
+  if (of_choice(decision) || of_choice(said_))
+    decision.changed = decision.rule_name != said_.rule_name || decision.action != said_.action ||
+                       decision.target != said_.target;
   // The name outlives the rule table.
   auto name = names_.find(outcome.decision.rule_name);
   if (name == names_.end()) name = names_.emplace(outcome.decision.rule_name).first;
   outcome.decision.rule_name = *name;
+  said_ = outcome.decision;
   if (outcome.decision.changed) changes_.put({at, outcome});
   return outcome;
 }
@@ -87,6 +118,8 @@ bool Decisions::may_follow(Time sensor_time) const {
 }
 
 Decisions::Outcome Decisions::decide_frame(const Frame& frame, bool live) {
+  const bool here = std::ranges::find(tracks_, choice_.id(), &Track::id) != tracks_.end();
+  chosen_ = choice_.watch(here, frame.time);
   Outcome outcome = decide(frame, frame.time);
   last_.reset();
   if (live && !inputs_.flushing()) last_ = frame;

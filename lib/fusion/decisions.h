@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fusion/sensor_inputs.h"
+#include "fusion/target_override.h"
 #include "threads/in_order.h"
 
 namespace cerberus::fusion {
@@ -26,6 +27,9 @@ class Decisions {
   explicit Decisions(SensorInputs& inputs) : inputs_(inputs) {}
 
   void configure(const FuserOptions& options, const RuleTable& table);
+  // The track that the application chose goes before every rule while it is on the frame (target_override.h), from the
+  // next frame on; the rule is then number 0, "chosen". 0: the rules alone.
+  void choose(std::uint32_t track);
   Interval limits() const;  // those that are in force
   void begin_anew();        // another scene, or another stream
   void end();               // of the stream, or a flush: there is no last frame any more
@@ -77,15 +81,19 @@ class Decisions {
   Outcome decide_frame(const Frame& frame, bool live);
   std::optional<Outcome> decide_between(const Frame& frame, Time sensor_time);
   Outcome decide(const Frame& frame, Time at);
+  void apply_choice(Decision& decision) const;
   void restart();
 
   SensorInputs& inputs_;
   mutable std::mutex lock_;  // held while the inputs are read, and never the other way round
   Fuser fuser_;
-  std::vector<Track> tracks_;                 // of the last frame
-  std::set<std::string, std::less<>> names_;  // of all rules that have decided
-  Time sensor_time_{};                        // by the last decision
-  std::optional<Frame> last_;                 // of a live stream
+  TargetOverride choice_;
+  TargetOverride::Answer chosen_ = TargetOverride::Answer::none;  // of the last frame
+  Decision said_;                                                 // the last one, with the choice
+  std::vector<Track> tracks_;                                     // of the last frame
+  std::set<std::string, std::less<>> names_;                      // of all rules that have decided
+  Time sensor_time_{};                                            // by the last decision
+  std::optional<Frame> last_;                                     // of a live stream
   threads::InOrder<Change> changes_{Change::replaces};
 };
 

@@ -44,7 +44,7 @@
  *   right (`cameramotion` with `horizontal-fov`, or the application).
  * - `pir`: the sensors' readings, 0 nothing, 1 detection, 2 invalid; and `fusion`: the
  *   decision of `pirfusion`: `rule` (number, 0 for one without), `name` (the rule's: of the default
- *   rules `camera`, `sector`, `overlap`, `return`, `zero`, `stopped`), `action` (`track`,
+ *   rules `camera`, `sector`, `overlap`, `return`, `zero`, `stopped`, `chosen`), `action` (`track`,
  *   `turn-left`, `turn-right`, `search`, `zero`, `hold`), `target` (a track's identity or null).
  *
  * Numbers have a point whatever the locale. Pixels, speeds, degrees and metres are rounded to 2 decimals,

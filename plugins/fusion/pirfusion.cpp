@@ -43,6 +43,9 @@
  * never applies is refused and the case named. A warning names what of it lies beyond `pan-min` and `pan-max`, and rules for
  * another number of sensors than the PIR pads have; another one, poses that come from another head than `head` only.
  *
+ * A track that the application chooses (`follow` of a #pantiltsink of this `head` downstream) goes before every rule from
+ * the next frame on, as rule 0 named `chosen`; while it is on no frame no other track is the target, for 5 s.
+ *
  * ## Example
  * |[
  * gst-launch-1.0 -m videotestsrc num-buffers=60 pattern=ball ! motiondetect ! pirfusion ! fakesink
@@ -67,6 +70,7 @@
 #include <vector>
 
 #include "cerberus/private/element.hpp"
+#include "cerberus/private/follow_query.hpp"
 #include "cerberus/private/settings_query.hpp"
 #include "fusion/decisions.h"
 #include "fusion/rule_check.h"
@@ -381,6 +385,20 @@ gboolean src_event(GstPad* pad, GstObject* parent, GstEvent* event) {
   return handled;
 }
 
+// Of the head downstream; one of another name finds its pirfusion, if any, on its own way up.
+gboolean src_query(GstPad* pad, GstObject* parent, GstQuery* query) {
+  auto* self = cerberus_pir_fusion_self(parent);
+  std::string_view head;
+  guint track = 0;
+  if (!parse_follow_query(query, head, track)) return gst_pad_query_default(pad, parent, query);
+  return guarded(self, FALSE, [&]() -> gboolean {
+    const std::string own = self->priv->settings.snapshot().head;
+    if (!own.empty() && own != head) return FALSE;
+    self->priv->decisions.choose(track);
+    return TRUE;
+  });
+}
+
 GstPad* request_new_pad(GstElement* element, GstPadTemplate* pad_template, const gchar* name,
                         const GstCaps*) {
   return guarded(element, nullptr, [&]() -> GstPad* {
@@ -484,6 +502,7 @@ void cerberus_pir_fusion_init(CerberusPirFusion* self) {
   gst_pad_set_event_function(priv.sink, video_event);
   gst_pad_set_activatemode_function(priv.sink, activate);
   gst_pad_set_event_function(priv.src, src_event);
+  gst_pad_set_query_function(priv.src, src_query);
   for (GstPad* pad : {priv.sink, priv.src}) {
     gst_pad_set_iterate_internal_links_function(pad, internal_links);
     GST_PAD_SET_PROXY_CAPS(pad);

@@ -33,6 +33,7 @@ struct HeadSession {
   std::atomic<const char*> head = nullptr;  // its name, interned; of the last one, if none is open
   std::atomic<double> field_of_view = 0;    // degrees
   std::atomic<bool> clock_driven = false, playing = false;
+  std::atomic<bool> chosen = false;  // a track, by an element upstream: follow_query.hpp
   std::atomic<bool> watched = true;  // false: the head needs a ticker and the system has no thread for it
   std::mutex changing;               // keeps the ticker waiting
 

@@ -68,7 +68,9 @@
  * `follow` (the identity of a track, as its region has it; false if the head is not there or the stream is over)
  * chooses the track to follow from the next frame on, whatever fusion or `target` would choose. While it is on
  * no frame the head follows no other track; after 5 s, also if it never came, a warning names it and
- * the usual choice continues. `auto` ends the choice, and so does each of the other signals: the last one counts.
+ * the usual choice continues. A `pirfusion` upstream of the same head takes the choice over: its decisions say
+ * `chosen`, and the head follows from the frame on that carries the first of them. `auto` ends the choice, and so does
+ * each of the other signals: the last one counts.
  *
  * A gyro of the kernel's IIO on the body that carries the head (`base-gyro`) measures how fast that turns: the rate goes
  * upstream as the event `cerberus-base`. Its bias is learnt while the robot stands, by the picture or by a `cerberus-base`
@@ -100,6 +102,7 @@
 #include <utility>
 
 #include "cerberus/private/element.hpp"
+#include "cerberus/private/follow_query.hpp"
 #include "cerberus/private/settings_query.hpp"
 #include "head_session.hpp"
 #include "shared/camera_mount.hpp"
@@ -277,6 +280,12 @@ GstFlowReturn cerberus_pan_tilt_sink_render(GstBaseSink* sink, GstBuffer* buffer
   });
 }
 
+// What pirfusion upstream does for the head, it ends with the choice.
+void end_choice(CerberusPanTiltSink* sink) {
+  HeadSession& session = sink->priv->session;
+  if (session.chosen.exchange(false)) ask_to_follow(GST_BASE_SINK_PAD(session.sink), session.head.load(), 0);
+}
+
 gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
   Private& self = *cerberus_pan_tilt_sink_self(sink)->priv;
   HeadSession& session = self.session;
@@ -285,7 +294,10 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
   if (type == GST_EVENT_GAP) gst_event_parse_gap(event, &from, &length);
   if (type == GST_EVENT_STREAM_START) self.state.began_late = session.playing;
   if (type == GST_EVENT_EOS) {
-    guarded(sink, [&] { session.end(); });
+    guarded(sink, [&] {
+      session.end();
+      end_choice(cerberus_pan_tilt_sink_self(sink));
+    });
     if (self.state.began_late && !is_live(GST_BASE_SINK_PAD(sink)).value_or(false))
       confirm_playing(GST_ELEMENT(sink));
   }
@@ -388,14 +400,22 @@ gboolean manual(CerberusPanTiltSink* sink, Act act) {
   HeadSession& session = sink->priv->session;
   return guarded(sink, FALSE, [&]() -> gboolean { return session.with_reports(act); });
 }
+// Any signal but `follow`: the last one counts.
+template <typename Act>
+gboolean instead_of_a_choice(CerberusPanTiltSink* sink, Act act) {
+  const gboolean done = manual(sink, act);
+  if (done) guarded(sink, [&] { end_choice(sink); });
+  return done;
+}
+
 template <bool relative>
 gboolean move(CerberusPanTiltSink* sink, gdouble pan, gdouble tilt) {
-  return manual(sink, [=](auto& head, auto now, auto& out) {
+  return instead_of_a_choice(sink, [=](auto& head, auto now, auto& out) {
     return head.move(radians(pan), radians(tilt), relative, now, out);
   });
 }
 gboolean turn(CerberusPanTiltSink* sink, gdouble pan, gdouble tilt) {
-  return manual(sink, [=](auto& head, auto now, auto& out) {
+  return instead_of_a_choice(sink, [=](auto& head, auto now, auto& out) {
     return head.turn(radians(pan), radians(tilt), now, out);
   });
 }
@@ -403,13 +423,21 @@ gboolean home(CerberusPanTiltSink* sink) {
   return move<false>(sink, 0, 0);
 }
 gboolean stay(CerberusPanTiltSink* sink) {
-  return manual(sink, [](auto& head, auto now, auto& out) { return head.stop(now, out); });
+  return instead_of_a_choice(sink, [](auto& head, auto now, auto& out) { return head.stop(now, out); });
 }
 gboolean automatic(CerberusPanTiltSink* sink) {
-  return manual(sink, [](auto& head, auto now, auto& out) { return head.automatic(now, out); });
+  return instead_of_a_choice(sink, [](auto& head, auto now, auto& out) { return head.automatic(now, out); });
 }
 gboolean follow(CerberusPanTiltSink* sink, guint id) {
-  return manual(sink, [=](auto& head, auto now, auto& out) { return head.follow(id, now, out); });
+  HeadSession& session = sink->priv->session;
+  const bool decided = guarded(sink, false, [&] {
+    return id != 0 && ask_to_follow(GST_BASE_SINK_PAD(session.sink), session.head.load(), id);
+  });
+  session.chosen = decided;
+  const gboolean done =
+      manual(sink, [=](auto& head, auto now, auto& out) { return head.follow(id, now, out, decided); });
+  if (!done) guarded(sink, [&] { end_choice(sink); });
+  return done;
 }
 
 void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {

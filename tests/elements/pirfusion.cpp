@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // pirfusion's decisions: its inputs from frames and events, and its outputs. (The rules are tested in
 // pirfusion_rules.cpp, the pads' input in pirfusion_pads.cpp, waiting in pirfusion_waiting.cpp.)
+#include "cerberus/private/follow_query.hpp"
 #include "fusion_rig.h"
 
 namespace {
@@ -106,6 +107,38 @@ GST_START_TEST(properties_count_while_playing) {
   double pan_min = 0;
   g_object_get(rig.element, "pan-min", &pan_min, nullptr);
   fail_unless(pan_min < 0, "%g", pan_min);  // as in force
+}
+GST_END_TEST
+
+GST_START_TEST(the_choice_of_its_head_downstream_is_the_decision_until_that_ends_it) {
+  Rig rig(true, "head=gate target=largest");
+  const auto two = [](GstClockTime time) {
+    GstBuffer* buffer = frame_with(time, 5, 1);
+    CerberusRegion large;
+    cerberus_region_init(&large);
+    large.id = 6;
+    large.tracked = TRUE;
+    large.width = large.height = 8;
+    large.age = GST_SECOND;
+    cerberus_buffer_add_region(buffer, &large);
+    return buffer;
+  };
+  const auto follow = [&](const char* head, guint track) {
+    return cerberus::ask_to_follow(rig.video->sinkpad, head, track);
+  };
+  fail_unless_equals_int(rig.show(two(0)).target, 6);
+  fail_if(follow("door", 5));
+  fail_unless_equals_int(rig.show(two(40 * kMs)).target, 6);
+  fail_unless(follow("gate", 5));
+  CerberusFusion fusion = rig.show(two(80 * kMs));
+  fail_unless_equals_int(fusion.target, 5);
+  fail_unless_equals_string(fusion.rule_name, "chosen");
+  fail_unless_equals_int(fusion.rule, 0);
+  fail_unless_equals_int(fusion.action, CERBERUS_FUSION_TRACK);
+  assert_says(rig.posted().back(), "80:0:track");
+  fail_unless(follow("gate", 0));
+  fusion = rig.show(two(120 * kMs));
+  fail_unless_equals_string(fusion.rule_name, "camera");
 }
 GST_END_TEST
 
@@ -328,6 +361,7 @@ static Suite* pirfusion_suite() {
   tcase_add_test(tc, every_frame_carries_a_decision_and_only_changes_are_posted);
   tcase_add_test(tc, only_confirmed_tracks_make_the_camera_found);
   tcase_add_test(tc, properties_count_while_playing);
+  tcase_add_test(tc, the_choice_of_its_head_downstream_is_the_decision_until_that_ends_it);
   tcase_add_test(tc, hysteresis_and_hold_stopped_are_the_users);
   tcase_add_test(tc, two_of_them_know_nothing_of_each_other);
   tcase_add_test(tc, it_begins_anew_after_it_was_stopped);

@@ -259,6 +259,18 @@ def follows_by_tap(driver, page):
     driver.execute_script("document.getElementById('scroller').scrollTop = 0")
     page.wait('a tap follows', tapped)
     page.wait('the head follows', lambda: not re.search('manual|stopped', page.status()))
+    page.wait('the frames say so', lambda: 'chosen (track' in page.status())
+    # A person who is gone is followed by nobody, and the page says that.
+    driver.execute_script("""
+        const all = facts.objects;
+        facts.objects = [{id: 4000, x: 0, y: 0, w: facts.width, h: facts.height}];
+        const box = picture.getBoundingClientRect();
+        follow({clientX: box.left + 5, clientY: box.top + 5});
+        facts.objects = all;
+        window.words = [];
+        new MutationObserver(() => words.push(at('word').textContent)).observe(at('word'), {childList: true})""")
+    page.wait('it says that 4000 is gone', lambda: 'number 4000 is gone' in driver.execute_script('return words'))
+    assert 'follows number 4000' not in driver.execute_script('return words')
 
 
 def two_tabs(driver, page, port):

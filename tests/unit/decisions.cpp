@@ -107,11 +107,48 @@ START_TEST(a_rules_name_outlives_its_table_and_steady_state_allocates_nothing) {
 }
 END_TEST
 
+START_TEST(the_chosen_track_is_the_decision_from_the_next_frame_on_until_it_is_given_up) {
+  Stream stream;
+  const Track others[]{{.id = 4, .x = 10, .y = 10, .width = 20, .height = 60, .age = 2s},
+                       {.id = 9, .x = 50, .y = 10, .width = 10, .height = 20, .age = 2s}};
+  const auto frame = [&](Time time, std::size_t count) {
+    return stream.decisions
+        .frame(time, time, true,
+               [&](Time, std::vector<Track>& tracks) {
+                 tracks.assign(others, others + count);
+                 return snapshot_of(0);
+               })
+        .decision;
+  };
+  ck_assert(frame(1s, 2).target == 4 && frame(1040ms, 2).rule_name == "camera");
+  stream.decisions.choose(9);
+  const Decision chosen = frame(1080ms, 2);
+  ck_assert(chosen.action == Action::track && chosen.target == 9 && chosen.rule == 0);
+  ck_assert(chosen.rule_name == "chosen" && chosen.changed && chosen.camera_found);
+  ck_assert(!frame(1120ms, 2).changed);
+  // A sensor does not take the head from it between two frames.
+  const auto between = stream.between(1130ms, 1);
+  ck_assert(between && between->decision.target == 9);
+  ck_assert(frame(1160ms, 1).action == Action::hold);  // it is awaited: no other track is followed
+  ck_assert(frame(1200ms, 2).target == 9);
+  frame(1240ms, 1);
+  const Decision lost = frame(1200ms + TargetOverride::kPatience, 1);
+  ck_assert(lost.target == 4 && lost.rule_name == "camera" && lost.changed);
+  stream.decisions.choose(9);
+  ck_assert(frame(7s, 2).target == 9);
+  stream.decisions.choose(0);
+  ck_assert(frame(7040ms, 2).rule_name == "camera");
+  stream.decisions.choose(31);  // a track that is gone
+  ck_assert(frame(7080ms, 2).rule_name == "camera" && frame(7080ms, 2).target != 31);
+}
+END_TEST
+
 int main() {
-  return cerberus::tests::run_suite("decisions",
-                                    {only_another_value_of_the_same_sensors_decides_between_frames,
-                                     no_decision_uses_older_readings_than_the_one_before,
-                                     a_stream_that_is_not_live_has_ended_or_is_flushed_has_no_last_frame,
-                                     changes_are_published_once_in_their_order,
-                                     a_rules_name_outlives_its_table_and_steady_state_allocates_nothing});
+  return cerberus::tests::run_suite(
+      "decisions", {only_another_value_of_the_same_sensors_decides_between_frames,
+                    no_decision_uses_older_readings_than_the_one_before,
+                    a_stream_that_is_not_live_has_ended_or_is_flushed_has_no_last_frame,
+                    changes_are_published_once_in_their_order,
+                    the_chosen_track_is_the_decision_from_the_next_frame_on_until_it_is_given_up,
+                    a_rules_name_outlives_its_table_and_steady_state_allocates_nothing});
 }

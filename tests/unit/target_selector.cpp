@@ -74,6 +74,19 @@ START_TEST(the_chosen_track_goes_before_every_decision_while_it_is_there) {
 }
 END_TEST
 
+START_TEST(a_choice_that_the_decisions_make_begins_and_ends_with_them) {
+  TargetSelector selector;
+  selector.follow(9, true);
+  const auto before = selector.on_frame({kTracks, decision(Action::track, {}, 4)}, 0s, 0);
+  ck_assert(before.goal.target->x == 110);  // a frame that was decided before the choice
+  const auto chosen = selector.on_frame({kTracks, decision(Action::track, {}, 9)}, 40ms, 0);
+  ck_assert(chosen.goal.target->x == 320);
+  ck_assert(selector.on_frame({kTracks, {}}, 80ms, 0).goal.target->x == 320);  // no decision: it is made here
+  const auto only_four = std::span(kTracks).first(1);
+  ck_assert_uint_eq(selector.on_frame({only_four, decision(Action::track, {}, 4)}, 6s, 0).lost, 9);
+}
+END_TEST
+
 START_TEST(a_decision_between_frames_counts_until_a_frame_has_as_late_readings) {
   TargetSelector selector;
   ck_assert(!selector.on_decision(decision(Action::turn_left, 1s)));  // no frame carries decisions
@@ -114,6 +127,7 @@ int main() {
   return tests::run_suite("target_selector",
                           {a_decision_on_the_frame_is_the_goal_and_its_target_the_middle_of_the_track,
                            without_a_decision_the_nearest_track_is_followed_and_then_zero,
+                           a_choice_that_the_decisions_make_begins_and_ends_with_them,
                            the_chosen_track_goes_before_every_decision_while_it_is_there,
                            a_decision_between_frames_counts_until_a_frame_has_as_late_readings,
                            a_target_between_frames_waits_for_the_next_one,

@@ -225,7 +225,10 @@ function showState() {
   if (camera.fault) rows.push(['Fault', camera.fault]);
   if (about().head) rows.push(['Head', camera.stopped ? 'stopped' : camera.head || '\u2013']);
   if (facts && facts.pose) rows.push(['Looks at', `${facts.pose.pan.toFixed(1)}\u00b0, ${facts.pose.tilt.toFixed(1)}\u00b0`]);
-  if (facts && facts.fusion) rows.push(['Rule', `${facts.fusion.name} (${facts.fusion.action})`]);
+  if (facts && facts.fusion) {
+    const target = facts.fusion.target === null ? '' : ` ${facts.fusion.target}`;
+    rows.push(['Rule', `${facts.fusion.name} (${facts.fusion.action}${target})`]);
+  }
   if (facts && facts.pir) {
     const words = facts.pir.map((reading) => ['quiet', 'detects', 'not ready'][reading] || 'unknown');
     rows.push(['Sensors', words.join(', ')]);
@@ -349,6 +352,7 @@ async function onPicture(data, from) {
     veil('');
     facts = length ? JSON.parse(new TextDecoder().decode(new Uint8Array(data, 12, length))) : null;
     drawRadar();
+    watchChoice();
   } finally {
     // Numbers are those of one socket.
     if (from.readyState === WebSocket.OPEN) from.send(`ack ${number}`);
@@ -360,6 +364,7 @@ async function onPicture(data, from) {
 let move = null, repeater = 0;
 
 function turn(pan, tilt) {
+  choice = null;
   const limit = (share) => Math.max(-1, Math.min(1, share)).toFixed(3);
   move = `turn ${limit(pan)} ${limit(tilt)}`;
   if (!repeater) {
@@ -398,6 +403,7 @@ for (const button of document.querySelectorAll('#pad button')) {
 }
 
 function stop() {
+  choice = null;
   clearInterval(driver);
   driver = 0;
   drive = null;
@@ -423,8 +429,11 @@ new IntersectionObserver((seen) => {
   stopInSight = seen[seen.length - 1].isIntersecting;
   showStop();
 }).observe(at('stop'));
-at('auto').addEventListener('click', () => send('auto'));
-at('home').addEventListener('click', () => send('home'));
+for (const order of ['auto', 'home'])
+  at(order).addEventListener('click', () => {
+    choice = null;
+    send(order);
+  });
 for (const button of document.querySelectorAll('[data-mode]'))
   button.addEventListener('click', () => send(`mode ${button.dataset.mode}`));
 
@@ -505,8 +514,10 @@ document.addEventListener('keydown', (event) => {
     pressed.set(event.code, kArrows[event.key]);
     turnByKeys();
   } else if (event.key === 'Home' && !inField && steers()) {
+    choice = null;
     send('home');
   } else if (event.key === 'a' && !inField && steers()) {
+    choice = null;
     send('auto');
   }
 });
@@ -555,7 +566,23 @@ function follow(event) {
     .sort((a, b) => a.w * a.h - b.w * b.h)[0];
   if (hit) {
     send(`follow ${hit.id}`);
-    say(`follows number ${hit.id}`);
+    choice = {id: hit.id, until: performance.now() + kChoice, follows: false};
+  }
+}
+
+// What is said is what the frames carry: that a choice has begun, and that its person is gone.
+const kChoice = 6000;  // ms; the robot gives a person up after 5 s
+let choice = null;
+
+function watchChoice() {
+  if (!choice) return;
+  const rule = facts && facts.fusion, chosen = rule && rule.name === 'chosen';
+  if (chosen && rule.target === choice.id) {
+    if (!choice.follows) say(`follows number ${choice.id}`, true);
+    choice.follows = true;
+  } else if (!chosen && (choice.follows || performance.now() > choice.until)) {
+    if (!mine().stopped) say(`number ${choice.id} is gone`);
+    choice = null;
   }
 }
 
