@@ -3,7 +3,7 @@
 """Whether others read what is served and written: ffmpeg and GStreamer read every stream and file, and each picture is
 compared with the one that went into the encoder.
 
-    clients.py files|odd|turned|levels|rtsp|rtp|mjpeg|cerberusd PICTURES [PROGRAM]
+    clients.py files|odd|resized|turned|levels|rtsp|rtp|mjpeg|cerberusd PICTURES [PROGRAM]
 
 PICTURES makes numbered pictures and compares them (pictures.cpp). The clients of a stream watch at the same time. Without
 ffmpeg GStreamer reads alone, and it is said. PROGRAM is cerberus-rtsp or cerberusd.
@@ -309,6 +309,32 @@ file = "FILE"
 folder = "FOLDER"
 encoder = "RECORDED"
 """
+
+
+def test_resized():
+    """A file whose size changes in mid-stream is annotated without a damaged picture, each in its size."""
+    sizes, each = ((320, 240), (640, 480), (320, 240)), 40
+    stream = b''
+    for width, height in sizes:
+        must(gst_launch(f'{pictures(each, width=width, height=height)} ! videoconvert ! x264enc ! '
+                        'video/x-h264,stream-format=byte-stream ! filesink location=part.h264'))
+        stream += pathlib.Path('part.h264').read_bytes()
+    pathlib.Path('stream.h264').write_bytes(stream)
+    source = 'filesrc location=stream.h264 ! decodebin'
+    must(gst_launch(f'{source} ! videoconvert ! motiondetect ! motionoverlay ! {I420} ! filesink location=drawn.raw'))
+    ended(launch_file('annotate', SOURCE=source))
+    must(gst_launch(f'filesrc location=annotated.mp4 ! decodebin ! {I420} ! filesink location=GStreamer.raw'))
+    if shutil.which('ffmpeg'):
+        must(run('ffmpeg -nostdin -y -v error -i annotated.mp4 -autoscale 0 -fps_mode passthrough -f rawvideo '
+                 '-pix_fmt yuv420p ffmpeg.raw'))
+    for name in ('GStreamer', 'ffmpeg') if shutil.which('ffmpeg') else ('GStreamer',):
+        with open('drawn.raw', 'rb') as drawn, open(f'{name}.raw', 'rb') as found:
+            for width, height in sizes:
+                for file, part in ((drawn, 'before.raw'), (found, 'after.raw')):
+                    pathlib.Path(part).write_bytes(file.read(each * width * height * 3 // 2))
+                print(f'{width}x{height} by {name}:')
+                print(must(run([PICTURES, 'compare', width, height, 'before.raw', 'after.raw', each])))
+            assert not found.read(), 'more pictures than there were'
 
 
 def turn(path):
