@@ -30,8 +30,13 @@ struct PictureMotion {
   vision::Transform transform;  // frame pixels
   double confidence = 0;        // 0 to 1: share of the picture that agrees
   vision::Size picture;         // pixels
-  double base_yaw = 0;          // radians by which the base turned meanwhile, as reported; 0: it stands
+  double base_yaw = 0;          // radians by which the base turned meanwhile, as reported
+  bool base_reported = false;   // it was, which a base_yaw other than 0 says as well
 };
+// Whether something measures the turn of the base, so that head_turn() is the head's alone.
+inline bool base_is_known(const PictureMotion& motion) {
+  return motion.base_reported || motion.base_yaw != 0;
+}
 // Returns the turn of a head that looks at `look` and whose picture moved. Nothing: the confidence is too low, or it is
 // no motion of a camera, or the lens is unknown.
 std::optional<Turn> head_turn(const PictureMotion& motion, const vision::Lens& lens,

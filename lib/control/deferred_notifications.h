@@ -47,7 +47,10 @@ struct Lost {  // the chosen track is on no frame any more: a warning
 struct UnknownZoom {  // the head has a zoom, and what it sees is not known: a warning
   bool operator==(const UnknownZoom&) const = default;
 };
-using Notice = std::variant<Status, Refusal, Fault, Lost, UnknownZoom>;
+struct MissingGyro {  // head and base turn, and nothing measures the base: a warning
+  bool operator==(const MissingGyro&) const = default;
+};
+using Notice = std::variant<Status, Refusal, Fault, Lost, UnknownZoom, MissingGyro>;
 
 // The notifications of all threads that were not sent yet. Each entry names its head, because the sender may drive
 // another one when it sends.

@@ -61,7 +61,7 @@ void HeadController::open(std::unique_ptr<drivers::HeadRunner> runner, const dri
   latest_ = epoch_ = published_ = Time::zero();
   newest_.reset();
   late_since_ = motion::kNever;
-  zoom_reported_ = false;
+  zoom_reported_ = gyro_reported_ = false;
   Pose start;
   start.pan.position = setup.pan;
   start.tilt.position = setup.tilt;
@@ -183,10 +183,12 @@ void HeadController::correct(const Frame& frame, Time now, DeferredNotifications
   const auto turn =
       frame.motion ? head_turn(*frame.motion, frame.lens, correction_.position().value_or(motion::PanTilt{}))
                    : std::nullopt;
-  if (correction_.on_frame(frame.running + epoch_, ahead, turn, setup_.limits)) {
+  const bool base_known = frame.motion && base_is_known(*frame.motion);
+  if (correction_.on_frame(frame.running + epoch_, ahead, turn, setup_.limits, base_known)) {
     confine_law();
     runner_->limit(now, correction_.limits(setup_.limits));
   }
+  if (correction_.ambiguous() && !std::exchange(gyro_reported_, true)) out.add(MissingGyro{});
   homing_ = homing_ && is_lost() && now - home_tried_ < kHomePatience;
   if (!is_lost() || (lost && now - home_tried_ < kHomePatience)) return;
   home_tried_ = now;
@@ -426,7 +428,11 @@ HeadController::Time HeadController::tick(Time at, DeferredNotifications& out) {
     if (now - late_since_ > kSilence) report_fault(kSilent, now, out);
     return at + kWhileMoving;
   }
-  if (answer != Answer::interrupted) check(runner->failure(), now, out);
+  if (answer != Answer::interrupted) {
+    const std::string failure = runner->failure();
+    homing_ = homing_ && failure.empty();  // a head that cannot find its reference goes on without it
+    check(failure, now, out);
+  }
   watch_emergency(now, out);
   watch_reports();
   if (poses.empty()) return at + kWhileMoving;

@@ -139,6 +139,7 @@ class HeadController {
   Time latest_{}, epoch_{};     // head time of the last command; head time = running time + epoch
   Time published_{};            // head time until which poses were published
   bool zoom_reported_ = false;  // that what the head sees is not known
+  bool gyro_reported_ = false;  // that one is missing
   bool fresh_ = true;           // no pose was published since running time may have begun anew
   std::optional<Time> newest_;  // running
   Time timeout_{}, manual_timeout_{};

@@ -17,7 +17,7 @@ void PoseCorrection::reset(const Pose& start, Time dead_time) {
   *this = {};
   estimate_.reset({start.pan.position, start.tilt.position});
   raw_.add(start);
-  dead_time_ = motion::seconds(dead_time);
+  dead_time_ = dead_time;
 }
 
 void PoseCorrection::add(Pose& pose) {
@@ -27,8 +27,17 @@ void PoseCorrection::add(Pose& pose) {
   pose.tilt.position += shift_.tilt;
 }
 
+// Of the larger one of all commands that are in force or on their way, radians a second.
+double PoseCorrection::speed(Time taken) const {
+  const auto of = [](const Pose& pose) {
+    const double braking = pose.moving() ? 1e-9 : 0;  // a head that begins to move has no speed yet
+    return std::max({std::abs(pose.pan.speed), std::abs(pose.tilt.speed), braking});
+  };
+  return std::max(of(raw_.at(taken)), of(raw_.at(taken + dead_time_)));
+}
+
 bool PoseCorrection::on_frame(Time taken, const Pose& ahead, const std::optional<Turn>& turn,
-                              const Limits& limits) {
+                              const Limits& limits, bool base_known) {
   const Pose raw = raw_.at(taken);
   const PanTilt here{raw.pan.position, raw.tilt.position};
   ahead_ = ahead;
@@ -37,7 +46,10 @@ bool PoseCorrection::on_frame(Time taken, const Pose& ahead, const std::optional
     shift_ = {};
     position_.reset();
   } else {
-    if (before_) estimate_.add({here.pan - before_->pan, here.tilt - before_->tilt}, turn);
+    if (before_) {
+      const PanTilt reckoned{here.pan - before_->pan, here.tilt - before_->tilt};
+      estimate_.add(reckoned, base_known ? turn : division_.head(taken, reckoned, speed(taken), turn));
+    }
     position_ = estimate_.position();
     shift_ = {position_->pan - here.pan, position_->tilt - here.tilt};
   }
@@ -56,8 +68,10 @@ Limits PoseCorrection::narrowed(const Limits& limits) const {
   if (!position_) return limits;
   const auto axis = [this](AxisLimits axis, double speed) {
     const double range = axis.to - axis.from, uncertainty = estimate_.uncertainty();
-    axis.from = std::min(0.0, axis.from + motion::stop_margin(-speed, dead_time_, uncertainty, range));
-    axis.to = std::max(0.0, axis.to - motion::stop_margin(speed, dead_time_, uncertainty, range));
+    axis.from = std::min(
+        0.0, axis.from + motion::stop_margin(-speed, motion::seconds(dead_time_), uncertainty, range));
+    axis.to =
+        std::max(0.0, axis.to - motion::stop_margin(speed, motion::seconds(dead_time_), uncertainty, range));
     return axis;
   };
   return {axis(limits.pan, ahead_.pan.speed), axis(limits.tilt, ahead_.tilt.speed)};

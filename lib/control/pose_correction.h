@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "control/pose_estimate.h"
+#include "control/turn_division.h"
 #include "drivers/head/head.h"
 
 namespace cerberus::control {
@@ -28,8 +29,11 @@ class PoseCorrection {
   // Adds a frame that was taken at `taken` (the head's time). ahead: the estimated pose when a command takes effect.
   // turn: of the picture since the frame before. Returns true if narrowed() and limits() of `limits` have changed by
   // so much that the driver must be given them.
+  // base_known: the base's turn is known, and is no part of `turn` (else turn_division.h).
   bool on_frame(Time taken, const motion::Pose& ahead, const std::optional<Turn>& turn,
-                const motion::Limits& limits);
+                const motion::Limits& limits, bool base_known = true);
+  // Whether head and base have both turned, and nothing measures the base.
+  bool ambiguous() const { return division_.ambiguous(); }
 
   // The estimated position when the last frame was taken; nullopt before the first and while the driver measures.
   std::optional<motion::PanTilt> position() const { return position_; }
@@ -44,13 +48,16 @@ class PoseCorrection {
   // Limits are passed on when a stop has moved by this, radians. derived: a tenth of what a head may be beyond them.
   static constexpr double kLeastChange = sensing::radians(0.1);
 
+  double speed(Time taken) const;
+
   PoseEstimate estimate_;
+  TurnDivision division_;
   motion::PoseHistory raw_;
   motion::PanTilt shift_;
   std::optional<motion::PanTilt> before_;    // the driver's position at the last frame
   std::optional<motion::PanTilt> position_;  // estimated at the last frame
   motion::Pose ahead_;
-  double dead_time_ = 0;                // seconds
+  Time dead_time_{};
   std::optional<motion::Limits> sent_;  // as limits() returned them
 };
 

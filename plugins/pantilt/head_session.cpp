@@ -66,6 +66,16 @@ struct Posting {
          head),
         (nullptr));
   }
+  void operator()(const control::MissingGyro&) const {
+    CERBERUS_ELEMENT_WARNING(
+        sink, RESOURCE, SETTINGS,
+        ("The body below the head \"%s\" turns while the head does, the head reports no position, and "
+         "nothing "
+         "measures the body's turn: a gyro is missing (base-gyro, or cerberus-base events). Where the head "
+         "looks is reckoned from its commands alone meanwhile.",
+         head),
+        (nullptr));
+  }
   void operator()(const control::Lost& lost) const {
     CERBERUS_ELEMENT_WARNING(
         sink, RESOURCE, NOT_FOUND,

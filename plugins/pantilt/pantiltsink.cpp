@@ -218,9 +218,9 @@ std::optional<control::PictureMotion> motion_of(State& state, GstBuffer* buffer,
   const auto step = state.camera.next(path_point(buffer), clock_time(state.taken), size);
   if (!motion || step.link != vision::CameraFollower::Link::follows || !state.taken) return std::nullopt;
   const CerberusBase* base = cerberus_buffer_peek_base(buffer);
-  const double rate = base && base->source == CERBERUS_BASE_REPORTED ? radians(base->yaw_rate) : 0;
-  const double base_yaw = rate * motion::seconds(taken - *state.taken);
-  return control::PictureMotion{step.motion.transform, motion->confidence, size, base_yaw};
+  const bool reported = base && base->source == CERBERUS_BASE_REPORTED;
+  const double base_yaw = reported ? radians(base->yaw_rate) * motion::seconds(taken - *state.taken) : 0;
+  return control::PictureMotion{step.motion.transform, motion->confidence, size, base_yaw, reported};
 }
 
 GstFlowReturn on_frame(Private& self, GstBuffer* buffer, GstClockTime pts, GstClockTime duration) {

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "control/turn_division.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cerberus::control {
+
+std::optional<Turn> TurnDivision::head(motion::Time taken, const motion::PanTilt& reckoned, double speed,
+                                       const std::optional<Turn>& seen) {
+  const Parameters& p = parameters_;
+  const double step = last_ ? motion::seconds(taken - *last_) : 0;
+  last_ = taken;
+  if (speed >= fastest_ || motion::seconds(taken - fast_) >= p.settle) {
+    fastest_ = speed;
+    fast_ = taken;
+  }
+  const bool rests = fastest_ == 0 && reckoned.pan == 0 && reckoned.tilt == 0;
+  if (!(step > 0 && step <= p.longest_step)) {
+    rate_ = calm_ = 0;
+    base_turns_ = false;
+    return rests ? std::nullopt : seen;
+  }
+  if (seen && std::isfinite(seen->yaw)) {
+    const double rate = (seen->yaw - reckoned.pan) / step;
+    rate_ += (1 - std::exp(-step / p.smoothing)) * (rate - rate_);
+    const double standing = std::max(p.standing, p.share * std::abs(reckoned.pan) / step);
+    calm_ = std::abs(rate_) < standing ? calm_ + step : 0;
+    if (calm_ >= p.calm) base_turns_ = false;
+    if (std::abs(rate_) > p.turning + p.most_error * fastest_) base_turns_ = true;
+  }
+  if (rests) return std::nullopt;
+  if (!base_turns_) return seen;
+  both_ += step;
+  return std::nullopt;
+}
+
+}  // namespace cerberus::control

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Divides the turn of the picture between a head and the base that carries it, where nothing measures the base's turn.
+//
+//   rate                 (turn of the picture - reckoned turn of the head) / time, smoothed
+//   fastest              speed that the head was commanded in the last `settle`
+//   the head rests       fastest = 0: it did not turn, and the picture's turn is the base's
+//   the base turns       the rate was above turning + most_error fastest, which no head explains, and has not been below
+//                        `standing` (or `share` of the head's speed) for `calm` since: the picture shows nothing of the head
+//   else                 the picture's turn is the head's
+//
+// A head that moves while the base turns cannot be told from one that does not obey: its turn is then known from its
+// commands alone. Pure; allocates nothing.
+#pragma once
+
+#include <optional>
+
+#include "control/base_rate.h"
+
+namespace cerberus::control {
+
+class TurnDivision {
+ public:
+  struct Parameters {
+    // Seconds after the reckoned end of a motion. chosen: cameras are late by up to half a second more than their dead time.
+    double settle = .5;
+    double turning = sensing::radians(5);  // a second; as what makes PIR sensors doubtful
+    double most_error =
+        2;  // derived: a head that still turns at its last speed when it is to turn the other way
+    double standing = sensing::radians(3);  // a second; chosen: below `turning` by its noise
+    double share = .3;      // of the head's speed; derived: two of three speeds are known to 15 %
+    double smoothing = .1;  // seconds; chosen: three frames
+    double calm = .3;       // seconds; chosen: longer than a base takes to turn round
+    double ambiguous = .5;  // seconds of head and base turning before it is reported; chosen: not for a jolt
+    double longest_step = 1;  // seconds from frame to frame; after that the base's rate is not known
+  };
+
+  TurnDivision() = default;
+  explicit TurnDivision(const Parameters& parameters) : parameters_(parameters) {}
+
+  // Returns the head's turn since the frame before as the picture shows it; nothing: it does not show it. taken: time of
+  // the frame; reckoned: the head's turn by its commands; speed: the larger one of its axes that a command may be giving
+  // it, radians a second; seen: turn of the picture.
+  std::optional<Turn> head(motion::Time taken, const motion::PanTilt& reckoned, double speed,
+                           const std::optional<Turn>& seen);
+  // Whether base and head have both turned, so that the picture could not tell what the head does.
+  bool ambiguous() const { return both_ >= parameters_.ambiguous; }
+
+ private:
+  Parameters parameters_;
+  std::optional<motion::Time> last_;
+  double calm_ = 0, both_ = 0;  // seconds
+  double rate_ = 0;             // of the base, radians a second
+  double fastest_ = 0;          // radians a second
+  motion::Time fast_{};         // when it was as fast last
+  bool base_turns_ = false;
+};
+
+}  // namespace cerberus::control
