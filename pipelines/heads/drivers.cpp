@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "drivers/helper/emergency_stop.h"
+#include "drivers/head/emergency_stop.h"
 #include "drivers/helper/helper_loop.h"
 #include "heads/one_program.h"
 #include "text/numbers.h"

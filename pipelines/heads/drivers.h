@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/head/inverted_head.h"
 #include "drivers/helper/head_device.h"
-#include "drivers/helper/inverted_head.h"
 #include "drivers/helper/option_words.h"
 
 namespace cerberus::heads {

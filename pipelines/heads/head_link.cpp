@@ -9,8 +9,8 @@
 #include <thread>
 #include <utility>
 
+#include "drivers/head/repeated_start.h"
 #include "drivers/helper/helper_head.h"
-#include "drivers/helper/repeated_start.h"
 
 namespace cerberus::heads {
 

@@ -21,7 +21,7 @@
 #include <string>
 #include <utility>
 
-#include "drivers/helper/inverted_head.h"
+#include "drivers/head/inverted_head.h"
 #include "drivers/pelco/pelco_head.h"
 #include "drivers/servo/servo_head.h"
 #include "drivers/stepper/stepper_head.h"

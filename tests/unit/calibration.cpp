@@ -13,7 +13,7 @@
 #include <string>
 
 #include "drivers/head/head_calibration.h"
-#include "drivers/helper/repeated_start.h"
+#include "drivers/head/repeated_start.h"
 #include "drivers/simulated/simulated_head.h"
 #include "support/suite.h"
 #include "support/text.h"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <random>
 
-#include "drivers/helper/emergency_stop.h"
+#include "drivers/head/emergency_stop.h"
 #include "support/head_plants.h"
 #include "support/suite.h"
 #include "support/text.h"

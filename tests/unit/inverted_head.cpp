@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The option `invert`; head_contract.cpp runs the drivers behind it.
-#include "drivers/helper/inverted_head.h"
+#include "drivers/head/inverted_head.h"
 
 #include <optional>
 #include <utility>

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 
-#include "drivers/helper/emergency_stop.h"
+#include "drivers/head/emergency_stop.h"
 #include "drivers/helper/head_server.h"
 #include "support/fake_lines.h"
 #include "support/suite.h"

@@ -153,7 +153,7 @@ void OnvifHead::on_status(const SoapAnswer& answer, Time now) {
 void OnvifHead::on_position(const onvif::Angles& at, Time now) {
   const bool were = positions_;
   const motion::PanTilt here = reckoned_.position(inquiry_sent_);
-  reports_.add(at, {degrees(here.pan), degrees(here.tilt)}, inquiry_sent_);
+  reports_.add({at.pan, at.tilt}, {degrees(here.pan), degrees(here.tilt)}, inquiry_sent_);
   positions_ = !reports_.wrong();
   if (positions_) {
     position_ = at;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "drivers/helper/emergency_stop.h"
+#include "drivers/head/emergency_stop.h"
 
 #include <algorithm>
 #include <cstring>

@@ -8,14 +8,15 @@
 #include <cmath>
 #include <optional>
 
-#include "drivers/onvif/spaces.h"
+#include "motion/pan_tilt.h"
 #include "motion/pose.h"
 
-namespace cerberus::drivers::onvif {
+namespace cerberus::drivers {
 
 class ReportWatch {
  public:
   using Time = motion::Time;
+  using PanTilt = motion::PanTilt;
   struct Parameters {
     double change = .5;  // degrees between two reports; derived: cameras round to tenths of a degree
     double travel =
@@ -25,10 +26,10 @@ class ReportWatch {
     Time patience = std::chrono::milliseconds(1000);
   };
 
-  // A report that was asked for at `asked`, while the commands had turned the camera to `reckoned` (degrees).
-  void add(const Angles& reported, const Angles& reckoned, Time asked) {
+  // A report (degrees) that was asked for at `asked`, while the commands had turned the camera to `reckoned` (degrees).
+  void add(const PanTilt& reported, const PanTilt& reckoned, Time asked) {
     constexpr Parameters kParameters{};
-    const auto apart = [](const Angles& a, const Angles& b) {
+    const auto apart = [](const PanTilt& a, const PanTilt& b) {
       return std::max(std::abs(a.pan - b.pan), std::abs(a.tilt - b.tilt));
     };
     if (!first_) first_ = {reported, reckoned};
@@ -44,10 +45,10 @@ class ReportWatch {
  private:
   enum class State : std::uint8_t { unproven, proven, wrong } state_ = State::unproven;
   struct Report {
-    Angles reported, reckoned;
+    PanTilt reported, reckoned;
   };
   std::optional<Report> first_;
   std::optional<Time> travelled_;
 };
 
-}  // namespace cerberus::drivers::onvif
+}  // namespace cerberus::drivers

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "drivers/helper/inverted_head.h"
+#include "drivers/head/inverted_head.h"
 
 namespace cerberus::drivers {
 namespace {

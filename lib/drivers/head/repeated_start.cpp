@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "drivers/helper/repeated_start.h"
+#include "drivers/head/repeated_start.h"
 
 namespace cerberus::drivers {
 
