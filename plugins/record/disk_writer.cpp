@@ -309,7 +309,9 @@ void DiskWriter::report_deleted(const std::vector<std::string>& names) {
   pass_complaints();
 }
 
+// Complaints come after the fault that they explain: the log's first line says that recording fails.
 void DiskWriter::pass_complaints() {
+  report_fault();
   for (const std::string& text : archive_.take_complaints()) warn(text);
 }
 
@@ -335,7 +337,10 @@ void DiskWriter::watch() {
     const int error = folder.try_out(record::RecordingFaults::Parameters{}.least_free);
     const bool was_sound = faults_.text().empty();
     faults_.tried(error ? takes_none(error) : "");
-    if (error && was_sound) warn(faults_.text());
+    if (error && was_sound) {
+      report_fault();
+      warn(faults_.text());
+    }
   }
   archive_.watch(steady());
   pass_complaints();
@@ -396,6 +401,7 @@ void DiskWriter::report_end(File& file, FileReport::State state, const FileFault
     const int error = record::Folder(folder_).try_out(record::RecordingFaults::Parameters{}.least_free);
     const std::string which = file.path.empty() ? "" : record::in_quotes(file.path) + ": ";
     faults_.file_failed(error ? takes_none(error) : which + fault.text, steady());
+    report_fault();
   }
   const std::uint64_t bytes = size_of(file.path);
   if (!file.path.empty()) {

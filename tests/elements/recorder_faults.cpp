@@ -94,6 +94,30 @@ GST_START_TEST(a_file_that_cannot_be_written_is_a_fault_until_another_one_is) {
 }
 GST_END_TEST
 
+// Nothing in the first file plays: its frames are in the next one, and its row is marked.
+GST_START_TEST(a_file_that_fails_before_anything_in_it_plays_is_marked_and_its_frames_are_in_the_next_one) {
+  signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  Rig rig;
+  rig.frame_size = 200 << 10;
+  rig.start();
+  rig.play_to(57);
+  const rlimit small{128 << 10, before.rlim_max};  // less than a frame, more than the index
+  setrlimit(RLIMIT_FSIZE, &small);
+  rig.start_event();
+  rig.play_to(70);
+  g_autoptr(GstStructure) failed = rig.wait_for_file("failed");
+  setrlimit(RLIMIT_FSIZE, &before);
+  rig.play_to(57 + 150);
+  rig.finish();
+  fail_unless(numbers_of(read_back(rig.folder.path() + "/1-2.mp4")) == range(30, 57 + 150));
+  Database index(rig.folder.path() + "/recordings.sqlite");
+  fail_unless_equals_int(index.count("select broken from recordings where file = '1.mp4'"), 1);
+  fail_unless_equals_int(index.count("select broken from recordings where file = '1-2.mp4'"), 0);
+}
+GST_END_TEST
+
 GST_START_TEST(a_folder_that_is_removed_is_a_fault_also_while_a_file_is_written_and_its_index_begins_anew) {
   Rig rig;
   rig.start();
@@ -102,8 +126,8 @@ GST_START_TEST(a_folder_that_is_removed_is_a_fault_also_while_a_file_is_written_
   rig.play_to(70);
   g_autoptr(GstStructure) started = rig.wait_for_file("started");
   std::filesystem::remove_all(rig.folder.path());
-  g_autoptr(GstStructure) failed = rig.wait_for_file("failed");
   fault_names(rig, rig.folder.path().c_str(), "No such file");
+  g_autoptr(GstStructure) failed = rig.wait_for_file("failed");
   std::filesystem::create_directory(rig.folder.path());
   rig.play_to(70 + 200);
   fail_unless(next_fault(rig) == "sound");
@@ -162,6 +186,8 @@ static Suite* recorder_faults_suite() {
   tcase_set_timeout(tests, 240);
   tcase_add_test(tests, a_disk_that_is_full_is_a_fault_before_an_event_needs_it_and_until_it_has_room);
   tcase_add_test(tests, a_file_that_cannot_be_written_is_a_fault_until_another_one_is);
+  tcase_add_test(tests,
+                 a_file_that_fails_before_anything_in_it_plays_is_marked_and_its_frames_are_in_the_next_one);
   tcase_add_test(tests,
                  a_folder_that_is_removed_is_a_fault_also_while_a_file_is_written_and_its_index_begins_anew);
   tcase_add_test(tests, a_folder_that_is_removed_while_nothing_happens_is_a_fault_until_it_is_there_again);

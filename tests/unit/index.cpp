@@ -130,6 +130,55 @@ START_TEST(a_reader_sees_the_newest_rows_of_a_camera_and_changes_nothing) {
 }
 END_TEST
 
+// 500 of three days, of which the oldest ones are asked for.
+START_TEST(the_index_answers_day_reason_and_kept_and_goes_on_below_an_id) {
+  const TemporaryFolder folder;
+  Index index;
+  open(index, folder.path + "/i.sqlite");
+  constexpr Time kDay = std::chrono::hours(24), kFirst = 20'000 * kDay;
+  for (int k = 0; k < 500; ++k) {
+    Recording made = row(std::to_string(k));
+    made.camera = "yard";
+    made.begin = kFirst + (k < 5 ? Time::zero() : k < 250 ? kDay : 2 * kDay) + std::chrono::seconds(k);
+    made.reason = k % 2 ? "track " + std::to_string(k) : "pir";
+    made.broken = k == 4;
+    bool taken = false;
+    ck_assert(index.add(made, taken).empty());
+    if (k == 1 || k == 300) ck_assert(index.set_keep(made.file, true).empty());
+  }
+  std::vector<Recording> rows;
+  const auto files = [&](const Wanted& wanted) {
+    ck_assert(index.read_newest(wanted, rows).empty());
+    std::string all;
+    for (const Recording& each : rows) all += each.file + ' ';
+    return all;
+  };
+  Wanted wanted;
+  wanted.camera = "yard";
+  wanted.from = kFirst;
+  wanted.until = kFirst + kDay;
+  ck_assert_str_eq(files(wanted).c_str(), "3 2 1 0 ");  // 4 is broken
+  wanted.reason = "track";
+  ck_assert_str_eq(files(wanted).c_str(), "3 1 ");
+  wanted.kept = true;
+  ck_assert_str_eq(files(wanted).c_str(), "1 ");
+  wanted.from = wanted.until = {};
+  wanted.reason = {};
+  ck_assert_str_eq(files(wanted).c_str(), "300 1 ");
+  wanted.kept = false;
+  std::size_t count = 0;
+  for (std::string last = "500"; files(wanted) != ""; last = rows.back().file) {
+    ck_assert_int_eq(std::stoi(rows.front().file), std::stoi(last) - 1 - (last == "5" ? 1 : 0));
+    count += rows.size();
+    wanted.below = rows.back().id;
+  }
+  ck_assert_uint_eq(count, 499);
+  std::vector<std::string> reasons;
+  ck_assert(index.read_reasons("yard", reasons).empty());
+  ck_assert(reasons == (std::vector<std::string>{"pir", "track"}));
+}
+END_TEST
+
 START_TEST(the_database_is_one_that_others_read_by_its_documented_columns) {
   const TemporaryFolder folder;
   const std::string path = folder.path + "/i.sqlite";
@@ -271,6 +320,7 @@ int main() {
   TCase* cases = tcase_create("index");
   for (const TTest* test :
        {a_row_is_read_as_it_was_written, a_reader_sees_the_newest_rows_of_a_camera_and_changes_nothing,
+        the_index_answers_day_reason_and_kept_and_goes_on_below_an_id,
         the_database_is_one_that_others_read_by_its_documented_columns, a_file_has_one_row,
         keep_is_what_was_set_last_and_updates_leave_it, a_row_that_was_removed_meanwhile_is_written_anew,
         two_recorders_write_into_one_index, an_index_of_a_newer_version_is_refused_and_stays_as_it_is,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "robot/retained_topics.h"
 #include "robot/settings_file.h"
 
 #include <sys/stat.h>
@@ -622,6 +623,34 @@ START_TEST(another_configuration_is_the_properties_that_differ_or_another_pipeli
 }
 END_TEST
 
+START_TEST(what_a_camera_or_a_part_leaves_at_the_broker_is_known_when_it_leaves) {
+  Settings settings;
+  settings.mqtt = Properties{{"host", "broker"}, {"discovery-prefix", "homeassistant"}};
+  CameraSettings front, back;
+  front.name = "front";
+  front.head = Properties{};
+  front.sensors = Properties{{"bearings", "0,90"}};
+  back.name = "back";
+  settings.cameras = {front, back};
+  const Topics all = retained_topics(settings);
+  ck_assert(all.contains("cerberus/back/state") && all.contains("cerberus/front/pantilt"));
+  ck_assert(all.contains("homeassistant/binary_sensor/cerberus_front/pir_1/config"));
+  ck_assert(!all.contains("homeassistant/binary_sensor/cerberus_front/pir_2/config"));
+  ck_assert(topics_of(text_of(all)) == all && topics_of("").empty() &&
+            topics_of("a\n\nb") == (Topics{"a", "b"}));
+  settings.cameras = {front};
+  settings.cameras[0].head.reset();
+  const Topics left = retained_topics(settings);
+  for (const std::string& topic : all) {
+    const bool leaves = topic.find("back") != topic.npos || topic.find("pan") != topic.npos ||
+                        topic.find("tilt") != topic.npos;
+    ck_assert_msg(left.contains(topic) != leaves, "%s", topic.c_str());
+  }
+  settings.mqtt.reset();
+  ck_assert(retained_topics(settings).empty());
+}
+END_TEST
+
 START_TEST(a_part_is_tried_again_after_1_2_4_to_60_seconds_and_after_a_sound_minute_after_1) {
   using std::chrono::seconds;
   Backoff backoff;
@@ -664,5 +693,6 @@ int main() {
                          an_encoder_is_named_by_its_element_or_as_in_the_list,
                          one_encoder_makes_the_plain_picture_of_the_recorder_and_of_all_clients,
                          another_configuration_is_the_properties_that_differ_or_another_pipeline,
+                         what_a_camera_or_a_part_leaves_at_the_broker_is_known_when_it_leaves,
                          a_part_is_tried_again_after_1_2_4_to_60_seconds_and_after_a_sound_minute_after_1});
 }

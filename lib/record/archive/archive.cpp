@@ -123,6 +123,8 @@ void Archive::list() {
 }
 
 void Archive::close() {
+  // What could be listed since the last look.
+  if (index_.is_open() && !unlisted_.empty() && (index_fault_.empty() || note(index_.try_to_write()))) list();
   index_.close();
   unlisted_.clear();
 }
