@@ -40,6 +40,7 @@ struct Record {
   std::vector<Time> stops;
   std::string failure;  // returned by command()
   bool emergency = false;
+  bool parted = false;  // its reports have parted from its commands
   std::string refusal;  // returned by open()
   int homes = 0;
   bool simulated = true;
@@ -66,6 +67,7 @@ class RecordedHead : public drivers::Head {
   }
   std::string state(Time time, Pose& pose) override { return head_->state(time, pose); }
   bool emergency() override { return record_->emergency; }
+  bool parted() override { return std::exchange(record_->parted, false); }
   std::string home(Time) override {
     ++record_->homes;
     return {};
@@ -925,6 +927,29 @@ START_TEST(an_interrupted_frame_is_passed_again) {
 }
 END_TEST
 
+// No decision moves it on, neither of a frame nor between two.
+START_TEST(after_reports_that_contradict_the_commands_only_an_order_moves_the_head) {
+  Options options;
+  options.clock_driven = true;
+  Rig rig(options);
+  rig.controller.frame(Rig::with(40ms, Action::turn_right), rig.out);
+  ck_assert(rig.record->commands.back().pan.kind != Kind::hold);
+  const std::size_t before = rig.record->commands.size();
+  rig.record->parted = true;
+  rig.controller.tick(60ms, rig.out);
+  for (int k = 2; k < 10; ++k) rig.controller.frame(Rig::with(k * 40ms, Action::turn_right), rig.out);
+  FusionDecision decision;
+  decision.made.action = Action::turn_left;
+  decision.decided = 400ms;
+  rig.controller.on_decision(decision, 400ms, rig.out);
+  ck_assert_uint_eq(rig.record->commands.size(), before);
+  ck_assert(rig.controller.automatic(rig.clock(410ms), rig.out));
+  rig.controller.frame(Rig::with(420ms, Action::turn_right), rig.out);
+  ck_assert_uint_gt(rig.record->commands.size(), before);
+  ck_assert(rig.record->commands.back().pan.kind != Kind::hold);
+}
+END_TEST
+
 int main() {
   return tests::run_suite("head_controller",
                           {a_target_is_reckoned_from_the_pose_on_the_frame,
@@ -964,6 +989,7 @@ int main() {
                            moves_expire_only_with_a_manual_timeout,
                            a_turn_ends_after_500_ms_whatever_the_manual_timeout,
                            the_emergency_stop_takes_the_head_from_everybody_until_a_new_order,
+                           after_reports_that_contradict_the_commands_only_an_order_moves_the_head,
                            a_manual_command_ends_with_a_fault,
                            a_reference_is_lost_only_where_the_picture_is_measured,
                            a_head_that_cannot_be_opened_is_an_error_and_reported_once,
