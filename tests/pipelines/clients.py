@@ -3,10 +3,10 @@
 """Whether others read what is served and written: ffmpeg and GStreamer read every stream and file, and each picture is
 compared with the one that went into the encoder.
 
-    clients.py files|odd|resized|turned|levels|rtsp|rtp|mjpeg|cerberusd PICTURES [PROGRAM]
+    clients.py WHAT PICTURES [PROGRAM]
 
-PICTURES makes numbered pictures and compares them (pictures.cpp). The clients of a stream watch at the same time. Without
-ffmpeg GStreamer reads alone, and it is said. PROGRAM is cerberus-rtsp or cerberusd.
+WHAT is one of the tests below. PICTURES makes numbered pictures and compares them (pictures.cpp). The clients of a
+stream watch at the same time. Without ffmpeg GStreamer reads alone, and it is said. PROGRAM is cerberus-rtsp or cerberusd.
 """
 import os
 import pathlib
@@ -411,9 +411,17 @@ def test_levels(program):
             data += line.recv(65536)
     check_levels('MJPEG', first_jpeg(data))
     stop(sender)
+    server, watching = watch_page(program, 'bands.mkv')
+    check_levels('page', next_picture(watching))
+    os.killpg(server.pid, signal.SIGTERM)
+    server.communicate(timeout=LIMIT)
+
+
+def watch_page(program, file):
+    """A cerberusd that shows this video as a camera's, and a browser's socket to its page."""
     port = free_port()
     pathlib.Path('robot.toml').write_text(f'state-folder = "state"\n[page]\nport = {port}\n[[camera]]\n'
-                                          'name = "yard"\nkind = "file"\nfile = "bands.mkv"\n', 'ascii')
+                                          f'name = "yard"\nkind = "file"\nfile = "{file}"\n', 'ascii')
     server = start([program, 'robot.toml'])
     line = server.stdout.readline()
     while 'One-time password' not in line:
@@ -422,13 +430,30 @@ def test_levels(program):
     page = Page(port)
     assert page.log_in('owner', re.search(r'([0-9a-f]{16})\n', line)[1]) == 200
     assert page.ask('POST', '/password', {'user': 'owner', 'password': 'long enough'})[0] == 200
-    pictures_of_page = Socket(page)
-    message = pictures_of_page.receive()
+    return server, Socket(page)
+
+
+def next_picture(watching):
+    """The next JPEG of the page, which is acknowledged as a browser does."""
+    message = watching.receive()
     while not isinstance(message, tuple):
-        message = pictures_of_page.receive()
-    check_levels('page', message[2])
+        message = watching.receive()
+    watching.send(f'ack {message[0]}')
+    return message[2]
+
+
+def test_page(program):
+    """The pictures of the page, one JPEG behind the other."""
+    pictures(MANY)
+    draw('motiondetect ! pirfusion ! motionoverlay crosshair=true')
+    server, watching = watch_page(program, 'scene.mkv')
+    pathlib.Path('page.mjpeg').write_bytes(b''.join(next_picture(watching) for _ in range(NEEDED)))
     os.killpg(server.pid, signal.SIGTERM)
     server.communicate(timeout=LIMIT)
+    readers = Readers()
+    readers.ffmpeg('page', 'drawn.raw', NEEDED, '-f', 'mjpeg', '-i', 'page.mjpeg')
+    readers.gstreamer('page', 'drawn.raw', NEEDED, f'filesrc location=page.mjpeg ! jpegparse ! jpegdec ! {LIMITED}')
+    readers.compare()
 
 
 def robot(file, port, folder, recorded, shown):
