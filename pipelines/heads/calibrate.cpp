@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Measures a head through its camera: control/calibration.h decides, this file connects it with camera and helper.
+// Measures a head through its camera: control/trials/calibration.h decides, this file connects it with camera and helper.
 #include <cerberus/cerberus.h>
 #include <gst/gst.h>
 #include <gst/video/video.h>
@@ -12,8 +12,8 @@
 #include <mutex>
 #include <vector>
 
-#include "control/calibration.h"
-#include "control/timeout_trial.h"
+#include "control/trials/calibration.h"
+#include "control/trials/timeout_trial.h"
 #include "drivers/head/head_calibration.h"
 #include "heads/head_link.h"
 #include "heads/tool.h"

@@ -12,7 +12,7 @@
 #include <memory>
 #include <utility>
 
-#include "control/move_check.h"
+#include "control/trials/move_check.h"
 #include "drivers/helper/option_words.h"
 #include "heads/head_link.h"
 #include "sensing/angles.h"

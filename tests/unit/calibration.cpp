@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A head of known table, dead time and play is measured by frames at 25 a second; and the file of what was measured.
-#include "control/calibration.h"
-#include "control/timeout_trial.h"
+#include "control/trials/calibration.h"
+#include "control/trials/timeout_trial.h"
 
 #include <unistd.h>
 #include <chrono>

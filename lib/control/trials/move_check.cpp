@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "control/move_check.h"
+#include "control/trials/move_check.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "control/calibration.h"
+#include "control/trials/calibration.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "control/timeout_trial.h"
+#include "control/trials/timeout_trial.h"
 
 #include <algorithm>
 #include <cmath>
