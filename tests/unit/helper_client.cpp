@@ -282,6 +282,29 @@ START_TEST(a_head_that_works_again_is_where_it_reports_to_be) {
 }
 END_TEST
 
+// It stands where it was left until a command moves it, which leads back.
+START_TEST(a_head_that_is_beyond_its_limits_at_the_start_is_no_fault_and_does_not_move_by_itself) {
+  HeadSetup setup;
+  setup.limits.pan.to = radians(60);
+  Rig rig(setup, "ready 1 velocity feedback rate 20");
+  double pan = 100;
+  const auto report = [&] {
+    pan += rig.sent.empty() ? 0 : Rig::speed_of(rig.sent.back().line) * .05;
+    rig.client.handle("pose " + std::to_string(pan) + " 0 0 0 0", rig.now);
+    rig.run(rig.now + 50ms);
+    assert_text(rig.client.fault_at_rest(), "");
+  };
+  for (int k = 0; k < 60; ++k) report();
+  rig.command({rig.now, {}, {}});
+  for (int k = 0; k < 60; ++k) report();
+  ck_assert_double_eq(pan, 100);
+  ck_assert_double_eq_tol(degrees(rig.at(rig.now).pan.position), 100, 0.01);
+  rig.command({rig.now, {Kind::velocity, radians(20), 0}, {}});
+  for (int k = 0; k < 100; ++k) report();
+  ck_assert_double_eq_tol(pan, 60, 1);
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "helper_client",
@@ -293,6 +316,7 @@ int main() {
        the_pose_goes_on_from_the_last_report_when_these_cease,
        reports_that_part_from_the_commands_stop_the_head_until_a_new_order,
        a_pose_that_is_no_number_is_a_fault_and_no_pose, a_head_that_works_again_is_where_it_reports_to_be,
+       a_head_that_is_beyond_its_limits_at_the_start_is_no_fault_and_does_not_move_by_itself,
        the_speeds_that_a_helper_reports_are_reckoned_from_the_dead_time_on,
        a_correction_leads_beyond_no_limit_unless_the_head_reports_that});
 }

@@ -148,7 +148,20 @@ std::string SimulatedHead::place(Time now, const motion::PanTilt& by, bool holds
     shift(nth_last(n).tilt, by.tilt);
   }
   again.time = placed_ = std::max({placed_, commanded_, now});
-  return begin(again);
+  const motion::Limits limits = setup_.limits;
+  Time end;
+  const Chapter& here = chapter_at(again.time + setup_.latency, end);
+  const auto widen = [&](motion::AxisLimits& axis, const AxisCommand& command, const Leg& leg) {
+    if (command.kind != AxisCommand::Kind::hold) return;
+    const double position = leg.plan.at(again.time + setup_.latency).position;
+    axis.from = std::min(axis.from, position);
+    axis.to = std::max(axis.to, position);
+  };
+  widen(setup_.limits.pan, again.pan, here.pan);
+  widen(setup_.limits.tilt, again.tilt, here.tilt);
+  std::string wrong = begin(again);
+  setup_.limits = limits;
+  return wrong;
 }
 
 // Begins a new trajectory from the head's position at the time when the command takes effect.

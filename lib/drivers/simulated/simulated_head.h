@@ -23,8 +23,8 @@ class SimulatedHead final : public Head {
   std::string limit(Time now, const motion::Limits& limits) override;
   std::string state(Time time, motion::Pose& pose) override;
   // The head was found `by` (radians) from where it was: its poses before and after `now` are shifted, and the last
-  // command continues from there, within the limits; holds: it is replaced by a hold. No command: one that is given
-  // earlier than `now` is not stale.
+  // command continues from there, within the limits; a hold stays where it is, also beyond them. holds: it is replaced by
+  // a hold. No command: one that is given earlier than `now` is not stale.
   std::string place(Time now, const motion::PanTilt& by, bool holds = false);
   bool simulated() const override { return true; }
   bool blocks() const override { return false; }
