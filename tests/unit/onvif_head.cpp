@@ -4,6 +4,7 @@
 #include "sensing/angles.h"
 #include "support/onvif_plant.h"
 #include "support/onvif_rig.h"
+#include "support/stepped_head.h"
 #include "support/stepped_helper.h"
 
 #include "support/suite.h"
@@ -314,6 +315,48 @@ START_TEST(positions_that_do_not_follow_the_camera_are_not_believed) {
 }
 END_TEST
 
+// The whole way from the pipeline's commands to the camera: to an angle, and as far as a limit.
+START_TEST(a_head_with_false_positions_goes_where_it_is_sent_and_not_beyond_its_limits) {
+  using cerberus::motion::AxisCommand;
+  using cerberus::sensing::radians;
+  using Kind = AxisCommand::Kind;
+  for (const bool absolute : {false, true}) {
+    SteppedHead head([&](const HeadSetup& setup) -> std::unique_ptr<HeadPlant> {
+      OnvifFaults faults;
+      faults.status_at_zero = true;
+      faults.dead_time = std::chrono::duration_cast<std::chrono::milliseconds>(setup.latency);
+      return std::make_unique<OnvifPlant>(
+          faults,
+          [&](OnvifOptions& options) {
+            with_range(options);
+            options.absolute = absolute;
+          },
+          20ms);
+    });
+    HeadSetup setup;
+    setup.latency = 200ms;
+    setup.limits.pan = {radians(-70), radians(70), radians(90), radians(600)};
+    assert_text(head.open(setup), "");
+    double most = 0;
+    const auto run = [&](Time from, Time to) {
+      for (Time now = from; now < to; now += 20ms) {
+        head.advance(now);
+        most = std::max(most, std::abs(head.plant().pan()));
+      }
+    };
+    assert_text(head.command({100ms, {Kind::position, radians(60), radians(90)}, {}}), "");
+    run(100ms, 6s);
+    ck_assert_double_eq_tol(head.plant().pan(), 60, 10);
+    ck_assert_double_le(most, 86);  // its dead time at 80 degrees a second
+    assert_text(head.command({6s, {Kind::velocity, radians(-80), 0}, {}}), "");
+    run(6s, 12s);
+    ck_assert_double_eq_tol(head.plant().pan(), -70, 10);
+    ck_assert_double_le(most, 86);  // its dead time at 80 degrees a second
+    assert_text(head.fault(), "");
+  }
+}
+END_TEST
+
 START_TEST(a_camera_that_refuses_a_timeout_by_any_fault_is_driven_without) {
   for (const char* code :
        {"TimeoutNotSupported", "InvalidArgs", "InvalidVelocity", "ActionNotSupported", "Oops"}) {
@@ -609,6 +652,7 @@ int main() {
        a_camera_that_claims_absolute_moves_and_refuses_them_is_turned_at_speeds,
        a_camera_that_always_reports_zero_is_not_turned_at_the_start,
        positions_that_do_not_follow_the_camera_are_not_believed,
+       a_head_with_false_positions_goes_where_it_is_sent_and_not_beyond_its_limits,
        a_camera_that_refuses_a_timeout_by_any_fault_is_driven_without,
        a_camera_that_refuses_moves_for_another_reason_keeps_its_timeout,
        a_range_is_used_or_said_not_to_be,

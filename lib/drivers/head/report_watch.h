@@ -39,6 +39,11 @@ class ReportWatch {
     if (state_ == State::unproven && travelled_ && asked - *travelled_ >= kParameters.patience)
       state_ = State::wrong;
   }
+  // How far the commands have turned the camera since the first report, degrees.
+  PanTilt travel(const PanTilt& reckoned) const {
+    if (!first_) return {};
+    return {reckoned.pan - first_->reckoned.pan, reckoned.tilt - first_->reckoned.tilt};
+  }
   bool proven() const { return state_ == State::proven; }
   bool wrong() const { return state_ == State::wrong; }
 

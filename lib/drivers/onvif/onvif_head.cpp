@@ -139,12 +139,16 @@ bool OnvifHead::goes_to_an_angle() const {
 
 onvif::PanTilt OnvifHead::wanted_velocity(Time now) const {
   std::optional<double> pan, tilt;  // by the last report and the velocity in force since
-  if (has_position(now)) {
+  const motion::PanTilt here = reckoned_.position(now);
+  if (has_position(now) && !reports_.proven()) {  // it would turn on and on if the reports were false
+    const motion::PanTilt travel = reports_.travel({degrees(here.pan), degrees(here.tilt)});
+    pan = position_->pan + travel.pan;
+    tilt = position_->tilt + travel.tilt;
+  } else if (has_position(now)) {
     const double seconds = motion::seconds(now - position_time_);
     pan = position_->pan + sent_velocity_.pan * seconds;
     tilt = position_->tilt + sent_velocity_.tilt * seconds;
   } else if (!positions_ && keeps_limits_) {  // it has lost them: what was promised is kept by reckoning
-    const motion::PanTilt here = reckoned_.position(now);
     pan = degrees(here.pan);
     tilt = degrees(here.tilt);
   }
