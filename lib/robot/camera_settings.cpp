@@ -129,8 +129,13 @@ class CameraReader {
       read_part(*table, "[camera.detection]", kDetection, camera_.detection);
     if (const TomlValue* table = reader_.table("fusion"))
       read_part(*table, "[camera.fusion]", kFusion, camera_.fusion);
-    if (const TomlValue* table = reader_.table("sensors"))
+    if (const TomlValue* table = reader_.table("sensors")) {
       read_part(*table, "[camera.sensors]", kSensors, camera_.sensors.emplace());
+      if (table->find("driver") == nullptr)
+        mistakes_.push_back(
+            {table->line,
+             "[camera.sensors] needs a \"driver\": gpio, iio, evdev, external, replay or scripted"});
+    }
     if (const TomlValue* table = reader_.table("head")) {
       read_part(*table, "[camera.head]", kHead, camera_.head.emplace());
       check_head(*table);
@@ -173,7 +178,9 @@ class CameraReader {
                                   std::string(kKinds[static_cast<std::size_t>(camera_.source.kind)]) + "\"");
     }
   }
-  void needs(const char* key) {
+  void needs(const char* key, const std::string& value) {
+    if (reader_.has(key) && value.empty())
+      reader_.complain(key, std::string("\"") + key + "\" of [[camera]] is empty");
     if (!reader_.has(key))
       reader_.complain("kind", "kind = \"" +
                                    std::string(kKinds[static_cast<std::size_t>(camera_.source.kind)]) +
@@ -214,9 +221,9 @@ class CameraReader {
     only_with({"wide-fov", "start-pan", "start-tilt"}, {world});
     only_with({"width", "height"}, {test, world, v4l2, libcamera});
     only_with({"framerate"}, {test, v4l2, libcamera});
-    if (source.kind == v4l2) needs("device");
-    if (source.kind == rtsp) needs("uri");
-    if (source.kind == SourceKind::file || source.kind == world) needs("file");
+    if (source.kind == v4l2) needs("device", source.device);
+    if (source.kind == rtsp) needs("uri", source.uri);
+    if (source.kind == SourceKind::file || source.kind == world) needs("file", source.file);
     if (reader_.has("width") != reader_.has("height"))
       reader_.complain(reader_.has("width") ? "width" : "height", "\"width\" and \"height\" belong together");
     for (const char* key : {"uri", "record-uri"}) check_uri(key);
@@ -272,7 +279,10 @@ class CameraReader {
     reader.lines("recorder.", camera_.lines);
     RecorderSettings& recorder = camera_.recorder.emplace();
     if (!reader.has("folder")) reader.complain("folder", "a [camera.recorder] needs a \"folder\"");
-    if (reader.text("folder", recorder.folder)) recorder.folder = below(folder_, recorder.folder);
+    if (reader.text("folder", recorder.folder) && recorder.folder.empty())
+      reader.complain("folder", "\"folder\" of [camera.recorder] is empty: give the path of a folder");
+    else
+      recorder.folder = below(folder_, recorder.folder);
     read_encoder(reader, {"h264", "jpeg"}, recorder.encoder);
     for (const char* key : {"encoder", "bitrate"})
       if (reader.has(key) && camera_.source.kind == SourceKind::rtsp)

@@ -60,7 +60,10 @@ void only_check() {
 }
 
 int serve(drivers::HeadDevice& turned, const Around& around) {
-  if (checks()) return 0;
+  if (checks()) {
+    const std::string wrong = turned.check();
+    return wrong.empty() ? 0 : fail(wrong);
+  }
   drivers::InvertedHead inverted(turned, around.inverted);
   drivers::HeadDevice& device = around.inverted.any() ? inverted : turned;
   const std::string& emergency_stop = around.emergency_stop;

@@ -79,6 +79,9 @@ class Trying {
     try_folder(state, line_of(settings_.lines, "state-folder", 0), is("state-folder", "the file", state));
     if (settings_.page.enabled) try_address("page", settings_.page.listen);
     if (settings_.rtsp) try_address("rtsp", settings_.rtsp->listen);
+    for (const bool tls : {settings_.page.enabled && settings_.page.tls && settings_.page.certificate.empty(),
+                           settings_.rtsp && settings_.rtsp->tls && settings_.rtsp->certificate.empty()})
+      if (tls) try_openssl(state);
     if (settings_.page.enabled && settings_.page.tls)
       try_certificate("page", settings_.page.certificate, settings_.page.key);
     if (settings_.rtsp && settings_.rtsp->tls)
@@ -157,6 +160,7 @@ class Trying {
   }
 
   void try_source(const CameraSettings& camera) {
+    if (!camera.source.file.empty()) try_file(camera);
     if (camera.source.kind != SourceKind::rtsp) return;
     try_uri(camera, "uri", camera.source.uri);
     if (!camera.source.record_uri.empty()) try_uri(camera, "record-uri", camera.source.record_uri);
@@ -169,6 +173,28 @@ class Trying {
     mistake(line_of(camera.lines, key, camera.line), is(key, "[[camera]]", uri) + ": " +
                                                          (error ? error->message : "it names no host") +
                                                          "; write rtsp://HOST:PORT/PATH");
+  }
+
+  // By its first bytes, as decodebin looks at it first.
+  void try_file(const CameraSettings& camera) {
+    const std::string& file = camera.source.file;
+    g_autoptr(GError) error = nullptr;
+    g_autofree gchar* line = g_strdup("filesrc name=source ! typefind name=type ! fakesink");
+    g_autoptr(GstElement) pipeline = gst_parse_launch(line, &error);
+    if (pipeline == nullptr) return;
+    gst_object_ref_sink(pipeline);
+    g_autoptr(GstElement) source = gst_bin_get_by_name(GST_BIN(pipeline), "source");
+    g_autoptr(GstElement) type = gst_bin_get_by_name(GST_BIN(pipeline), "type");
+    g_object_set(source, "location", file.c_str(), nullptr);
+    gst_element_set_state(pipeline, GST_STATE_PAUSED);
+    gst_element_get_state(pipeline, nullptr, nullptr, 3 * GST_SECOND);
+    g_autoptr(GstCaps) caps = nullptr;
+    g_object_get(type, "caps", &caps, nullptr);
+    gst_element_set_state(pipeline, GST_STATE_NULL);
+    const char* is_a = caps ? gst_structure_get_name(gst_caps_get_structure(caps, 0)) : "unknown";
+    if (caps != nullptr && !g_str_has_prefix(is_a, "text/") && !g_str_has_prefix(is_a, "audio/")) return;
+    lack(line_of(camera.lines, "file", camera.line),
+         is("file", "[[camera]]", file) + ": this is no video (its type is " + is_a + "); name another");
   }
 
   // Devices come and go: without them the robot starts, and waits.
@@ -185,7 +211,28 @@ class Trying {
       for (const Property& one : *part.properties)
         if (one.name == "device") try_device(one.value, one.line, is("device", part.where, one.value));
     }
+    try_chip(camera);
   }
+  // A chip may also be named by its label, which only the kernel knows.
+  void try_chip(const CameraSettings& camera) {
+    if (!camera.sensors) return;
+    const auto of = [&](std::string_view name) {
+      return std::ranges::find(*camera.sensors, name, &Property::name);
+    };
+    const auto driver = of("driver"), chip = of("chip");
+    if (driver == camera.sensors->end() || driver->value != "gpio") return;
+    const bool named = chip != camera.sensors->end();
+    const std::string name = named ? chip->value : "gpiochip0";
+    const std::string path = name.starts_with('/') ? name : "/dev/" + name;
+    g_autoptr(GDir) devices = g_dir_open("/dev", 0, nullptr);
+    bool any = false;
+    while (const gchar* entry = devices ? g_dir_read_name(devices) : nullptr)
+      any = any || g_str_has_prefix(entry, "gpiochip");
+    if (any && (!name.starts_with("gpiochip") || ::access(path.c_str(), F_OK) == 0)) return;
+    lack(named ? chip->line : driver->line,
+         is("chip", "[camera.sensors]", name) + ": this machine has no such GPIO chip now");
+  }
+
   void try_device(const std::string& device, std::uint32_t line, const std::string& what) {
     const bool serial = device.starts_with(kSerial);
     const std::string path = serial ? device.substr(kSerial.size()) : device;
@@ -238,6 +285,14 @@ class Trying {
       mistake(line_of(settings_.lines, table + ".certificate", 0),
               is("certificate", '[' + table + ']', certificate) + " and \"certificate-key\" \"" + key +
                   "\": " + error->message + "; both are PEM files of one certificate");
+  }
+
+  // The tool that makes a certificate where none is named.
+  void try_openssl(const std::string& state) {
+    g_autofree gchar* tool = g_find_program_in_path("openssl");
+    if (tool != nullptr || g_file_test((state + "/page-certificate.pem").c_str(), G_FILE_TEST_EXISTS)) return;
+    lack(line_of(settings_.lines, "page.tls", line_of(settings_.lines, "rtsp.tls", 0)),
+         "\"tls\" without a \"certificate\" needs the tool openssl: install it");
   }
 
   void try_webhook() {

@@ -80,6 +80,21 @@ MISTAKES = [
     (FRONT + '[mqtt]\nhost = ""\n', 5, ['host']),
     (FRONT + '[base]\ncommand = "no-such-program"\n', 5, ['command', 'no-such-program']),
     (FRONT + '[base]\ncommand = ""\n', 5, ['command']),
+    (FRONT + '[mqtt]\nhost = "mqtt://broker"\n', 5, ['host', 'mqtt://broker']),
+    (FRONT + '[camera.recorder]\nfolder = ""\n', 5, ['folder', 'empty']),
+    ('[[camera]]\nname = "a"\nkind = "v4l2"\ndevice = ""\n', 4, ['device', 'empty']),
+    (FRONT + '[camera.sensors]\nbearings = "0"\n', 4, ['[camera.sensors]', 'driver']),
+    (FRONT + '[camera.sensors]\ndriver = "gpio"\nlines = "17,,22"\n', 6, ['lines', '17,,22', 'without a name']),
+    (FRONT + '[camera.sensors]\ndriver = "external"\ndevice = "serial:"\n', 6, ['device', 'serial:', 'is no device']),
+    (FRONT + '[camera.head]\ndriver = "visca"\ndevice = "ttyUSB0"\n', 6, ['device', 'ttyUSB0', 'serial:/dev/ttyUSB0']),
+    (FRONT + '[camera.head]\ndriver = "visca"\ndevice = "udp:camera"\n', 6, ['device', 'udp:camera', 'HOST:PORT']),
+    (FRONT + '[camera.head]\ndriver = "stepper-gpio"\ndevice = "gpiochip0"\n', 4, ['drives no motor']),
+    (FRONT + '[camera.head]\ndriver = "stepper-gpio"\ndevice = "gpiochip0"\n'
+     'device-options = "pan=\'lines=17,18,17,22\'"\n', 7, ['device-options', '17', 'twice']),
+    (FRONT + '[camera.head]\ndriver = "servo-pwm"\ndevice = "pwmchip0"\ndevice-options = "pan=\'channel=0\' tilt=\'channel=0\'"\n', 7,
+     ['device-options', 'same channel']),
+    ('[[camera]]\nname = "w"\nkind = "world"\nfile = "short"\nstart-pan = 80\n[camera.head]\npan-max = 10\n', 7,
+     ['start-pan', '80', 'pan-max']),
 ]
 
 # What is no mistake of the file, but keeps a part from starting here and now.
@@ -88,6 +103,8 @@ LACKS = [
     (FRONT + '[camera.recorder]\nfolder = "short/recordings"\n', 5, ['folder', 'short/recordings', 'Not a directory']),
     (FRONT + '[camera.recorder]\nfolder = "/dev/null/recordings"\n', 5, ['folder', '/dev/null/recordings']),
     ('state-folder = "short"\n' + FRONT, 1, ['state-folder', 'short']),
+    ('[[camera]]\nname = "a"\nkind = "file"\nfile = "short"\n', 4, ['file', 'short', 'no video']),
+    (FRONT + '[camera.sensors]\ndriver = "gpio"\nlines = "1,2,3"\nchip = "gpiochip77"\n', 7, ['chip', 'gpiochip77']),
     (FRONT + '[page]\nlisten = "192.0.2.7"\n', 5, ['listen', '192.0.2.7']),
     (FRONT + VISCA, 6, ['device', '/dev/ttyS9']),
 ]
@@ -119,7 +136,7 @@ def check(folder, text):
 def built(text):
     """Whether this build has what a file needs."""
     return all(name in HAS for name, words in {'page': '[page]', 'rtsp': '[rtsp]', 'mqtt': '[mqtt]', 'visca': '"visca"',
-                                               'pelco': '"pelco-d"', 'gpio': '"gpio"', 'iio': '"iio"'}.items() if words in text)
+                                               'pelco': '"pelco-d"', 'stepper': '"stepper-gpio"', 'servo': '"servo-pwm"', 'gpio': '"gpio"', 'iio': '"iio"'}.items() if words in text)
 
 
 def checks(folder):

@@ -97,7 +97,10 @@ SensorError ExternalSensor::check(const SensorSetup& setup) const {
         ""};
   Options options;
   if (SensorError error = read_options(setup.options, options)) return error;
-  if (setup.command.empty()) return {};
+  if (setup.command.empty()) {
+    const std::string wrong = setup.device.starts_with(kSerial) ? ByteStream::check(setup.device) : "";
+    return wrong.empty() ? SensorError{} : SensorError{SensorFault::settings, wrong + " (device).", ""};
+  }
   const std::string wrong = command_fault(setup.command);
   return wrong.empty() ? SensorError{}
                        : SensorError{SensorFault::settings, "The command: " + wrong + ".", ""};

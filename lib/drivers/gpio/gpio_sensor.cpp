@@ -39,6 +39,9 @@ SensorError GpioSensor::check(const SensorSetup& setup) const {
   std::vector<std::string> all = setup.lines;
   all.insert(all.end(), setup.red.begin(), setup.red.end());
   all.insert(all.end(), setup.blue.begin(), setup.blue.end());
+  if (std::find(all.begin(), all.end(), "") != all.end())
+    return {SensorFault::settings,
+            "A GPIO line without a name stands between two commas (lines, leds-red, leds-blue).", ""};
   for (auto one = all.begin(); one != all.end(); ++one)
     if (std::find(all.begin(), one, *one) != one)
       return {SensorFault::settings,

@@ -16,6 +16,8 @@ namespace cerberus::drivers {
 class HeadDevice {
  public:
   virtual ~HeadDevice() = default;
+  // What open() refuses of the options alone, without a look at any device.
+  virtual std::string check() const { return {}; }
   virtual std::string open(const HeadSetup& setup, Time now) = 0;
   virtual HeadAbilities abilities() const = 0;
   // Commands as HeadLines has them; what abilities() does not list is never asked for.

@@ -27,6 +27,10 @@ int step_of(const AxisCommand& command, double fastest, double limit) {
 
 }  // namespace
 
+std::string PelcoHead::check() const {
+  return ByteStream::check(options_.device);
+}
+
 std::string PelcoHead::open(const HeadSetup& setup, Time now) {
   if (options_.address < 1 || options_.address > 255) return "a Pelco-D address is 1 to 255";
   if (!(options_.pan_speed > 0) || !(options_.tilt_speed > 0))

@@ -34,6 +34,7 @@ class PelcoHead final : public StreamDevice {
     reports_ = options.feedback;
     measured_ = {kUnknown, kUnknown};
   }
+  std::string check() const override;
   std::string open(const HeadSetup& setup, Time now) override;
   HeadAbilities abilities() const override;
   void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;

@@ -74,11 +74,22 @@ void ServoHead::set_limits(Axis& axis, const AxisLimits& limits) {
   if (axis.options.slew > 0) axis.limits.speed = std::min(limits.speed, axis.options.slew);
 }
 
+std::string ServoHead::check() const {
+  Axis pan, tilt;
+  pan.options = options_.pan;
+  tilt.options = options_.tilt;
+  if (!pan.there() && !tilt.there())
+    return "servo-pwm drives no servo: name the channel of an axis (pan='channel=0')";
+  if (pan.there() && tilt.there() && options_.pan.channel == options_.tilt.channel)
+    return "pan and tilt have the same channel, " + std::to_string(options_.pan.channel) +
+           ": each servo has its own";
+  return {};
+}
+
 std::string ServoHead::open(const HeadSetup& setup, Time now) {
+  if (std::string wrong = check(); !wrong.empty()) return wrong;
   pan_.options = options_.pan;
   tilt_.options = options_.tilt;
-  if (!pan_.there() && !tilt_.there())
-    return "servo-pwm drives no servo: name the channel of an axis (pan='channel=0')";
   const auto prepare = [&](const char* name, Axis& axis, const AxisLimits& limits, double start) {
     axis.plan = motion::Plan(start, now);
     axis.rest_since = now;

@@ -22,6 +22,7 @@ class ServoHead final : public HeadDevice {
   explicit ServoHead(ServoOptions options) : options_(std::move(options)) {}
   ~ServoHead() override;
 
+  std::string check() const override;
   std::string open(const HeadSetup& setup, Time now) override;
   HeadAbilities abilities() const override;
   void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;

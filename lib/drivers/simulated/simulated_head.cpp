@@ -61,7 +61,7 @@ double arrival(const AxisState& state, double position) {
 
 }  // namespace
 
-std::string SimulatedHead::open(const HeadSetup& setup) {
+std::string SimulatedHead::check(const HeadSetup& setup) const {
   if (std::string wrong = motion::check(setup.limits); !wrong.empty()) return wrong;
   for (const auto& [value, name] :
        {std::pair{setup.step, "step-size"}, {setup.backlash, "backlash"}, {setup.noise, "noise"}})
@@ -71,8 +71,11 @@ std::string SimulatedHead::open(const HeadSetup& setup) {
   if (setup.latency < Time::zero() || setup.latency > kMostLatency)
     return "latency must be 0 to 5 s, and is " +
            text::significant(motion::seconds(setup.latency), 6).string() + " s";
-  if (std::string wrong = motion::check_start(setup.limits, setup.pan, setup.tilt); !wrong.empty())
-    return wrong;
+  return motion::check_start(setup.limits, setup.pan, setup.tilt);
+}
+
+std::string SimulatedHead::open(const HeadSetup& setup) {
+  if (std::string wrong = check(setup); !wrong.empty()) return wrong;
   setup_ = setup;
   commanded_ = placed_ = Time::zero();
   next_ = count_ = 1;

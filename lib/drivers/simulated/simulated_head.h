@@ -16,6 +16,7 @@ namespace cerberus::drivers {
 
 class SimulatedHead final : public Head {
  public:
+  std::string check(const HeadSetup& setup) const override;
   std::string open(const HeadSetup& setup) override;
   void close() noexcept override;
   void stop(Time now) noexcept override;

@@ -51,9 +51,22 @@ std::optional<StepperAxis> StepperHead::make_axis(const char* name, const Steppe
   return StepperAxis(name, options, wiring, end_stop, options_.release_delay, options_.stale, *port_);
 }
 
-std::string StepperHead::open(const HeadSetup& setup, Time now) {
+std::string StepperHead::check() const {
   if (options_.pan.lines.empty() && options_.tilt.lines.empty())
     return "stepper-gpio drives no motor: name the lines of an axis (pan='lines=17,18,27,22')";
+  std::vector<std::string> outputs, inputs;
+  std::vector<bool> initial;
+  add_lines(options_.pan, outputs, initial, inputs);
+  add_lines(options_.tilt, outputs, initial, inputs);
+  outputs.insert(outputs.end(), inputs.begin(), inputs.end());
+  for (auto line = outputs.begin(); line != outputs.end(); ++line)
+    if (std::find(outputs.begin(), line, *line) != line)
+      return "the GPIO line " + *line + " is named twice: each has one purpose";
+  return {};
+}
+
+std::string StepperHead::open(const HeadSetup& setup, Time now) {
+  if (std::string wrong = check(); !wrong.empty()) return wrong;
   if (std::string wrong = open_lines(); !wrong.empty()) return wrong;
   std::size_t inputs = 0;
   pan_ = make_axis("pan", options_.pan, 0, inputs);

@@ -23,6 +23,7 @@ class StepperHead final : public HeadDevice {
   StepperHead(StepperOptions options, std::unique_ptr<LinePort> port, std::FILE* record = nullptr);
   ~StepperHead() override;
 
+  std::string check() const override;
   std::string open(const HeadSetup& setup, Time now) override;
   HeadAbilities abilities() const override;
   void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;

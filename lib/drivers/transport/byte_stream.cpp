@@ -53,15 +53,26 @@ std::string why_not(const std::string& path) {
 
 }  // namespace
 
-std::string ByteStream::open(const std::string& address, int baud) {
-  close();
+std::string ByteStream::check(const std::string& address) {
   const std::size_t colon = address.find(':');
   const std::string kind = address.substr(0, colon);
   const std::string place = colon == std::string::npos ? std::string() : address.substr(colon + 1);
-  if (!place.empty() && kind == "serial") return open_serial(place, baud);
-  if (!place.empty() && kind == "udp") return open_socket(address, place, true);
-  if (!place.empty() && kind == "tcp") return open_socket(address, place, false);
-  return "\"" + address + "\" is no device: write serial:/dev/ttyUSB0, udp:HOST:PORT or tcp:HOST:PORT";
+  if (place.empty() || (kind != "serial" && kind != "udp" && kind != "tcp"))
+    return "\"" + address + "\" is no device: write serial:/dev/ttyUSB0, udp:HOST:PORT or tcp:HOST:PORT";
+  if (kind == "serial") return {};
+  const std::size_t port = place.rfind(':');
+  if (port == std::string::npos || port == 0 || port + 1 == place.size())
+    return "\"" + address + "\" names no port: write HOST:PORT";
+  return {};
+}
+
+std::string ByteStream::open(const std::string& address, int baud) {
+  close();
+  if (std::string wrong = check(address); !wrong.empty()) return wrong;
+  const std::size_t colon = address.find(':');
+  const std::string place = address.substr(colon + 1);
+  if (address.starts_with("serial:")) return open_serial(place, baud);
+  return open_socket(address, place, address.starts_with("udp:"));
 }
 
 std::string ByteStream::open_serial(const std::string& path, int baud) {
@@ -98,7 +109,6 @@ std::string ByteStream::open_serial(const std::string& path, int baud) {
 
 std::string ByteStream::open_socket(const std::string& address, const std::string& place, bool datagrams) {
   const std::size_t colon = place.rfind(':');
-  if (colon == std::string::npos) return "\"" + address + "\" names no port: write HOST:PORT";
   std::string host = place.substr(0, colon);
   if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
   addrinfo hints{}, *first = nullptr;

@@ -69,6 +69,10 @@ void ViscaHead::on_connected(Time now) {
   zoom_due_ = options_.zoom >= 0;
 }
 
+std::string ViscaHead::check() const {
+  return ByteStream::check(options_.device);
+}
+
 std::string ViscaHead::open(const HeadSetup& setup, Time now) {
   if (options_.address < 1 || options_.address > 7) return "a VISCA address is 1 to 7";
   if (options_.zoom > visca::kMostZoom)

@@ -157,8 +157,10 @@ Properties read_mqtt(const TomlValue& table, Folders folders, bool& list_cameras
   if (!reader.has("host")) reader.complain("host", "[mqtt] needs the \"host\" of the broker");
   reader.properties(kMqtt, properties);
   for (const Property& property : properties)
-    if (property.name == "host" && property.value.empty())
-      reader.complain("host", "\"host\" of [mqtt] is empty: give the broker's name or address");
+    if (property.name == "host" &&
+        (property.value.empty() || property.value.find_first_of(" /") != std::string::npos))
+      reader.complain("host", "\"host\" of [mqtt] is \"" + property.value +
+                                  "\": give the broker's name or address alone, and a port as \"port\"");
   for (const Property& property : properties)
     if (property.name == "topic-prefix" && !publish::is_topic_level(property.value))
       reader.complain("topic-prefix", "\"topic-prefix\" is one level of a topic, without / + #");
