@@ -9,8 +9,10 @@
 #if HAVE_ONVIF
 #include "drivers/onvif/discovery.h"
 #endif
+#include "drivers/head/head_place.h"
 #include "drivers/transport/byte_stream.h"
 #include "drivers/visca/visca.h"
+#include "heads/one_program.h"
 #include "heads/tool.h"
 
 namespace cerberus::heads {
@@ -75,9 +77,10 @@ int list_heads(const std::vector<std::string>& named) {
     std::printf("%s: ", device.c_str());
     ByteStream stream;
     bool found = false;
-    std::string wrong;
+    // A camera that is driven is not asked: its driver would take the answer for its own, or lose count of its messages.
+    std::string wrong = hold_place(head_place("visca", device, {}), {});
     for (const int baud : {9600, 38400}) {
-      if (found || !(wrong = stream.open(device, baud)).empty()) break;
+      if (found || !wrong.empty() || !(wrong = stream.open(device, baud)).empty()) break;
       found = answers_visca(stream);
       if (!device.starts_with("serial:")) break;
     }

@@ -149,6 +149,8 @@ def test_one_program_drives_a_head_and_a_killed_one_frees_it():
         begin = time.monotonic()
         run([*camera, 'address=01'], stdin=subprocess.DEVNULL)
         assert time.monotonic() - begin < 3  # at once: a pipeline waits 5 s for a helper
+        status, said = run([TOOL, 'list', 'udp:127.0.0.1:9'])
+        assert status == 1 and f'another program (process {os.getpid()}) drives the head' in said, said
         assert run([*camera, 'address=2'], stdin=subprocess.DEVNULL)[1] == ''
         first.kill()
     assert run(camera, stdin=subprocess.DEVNULL)[1] == ''
