@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "robot/access.h"
+#include "robot/page/access.h"
 
 namespace cerberus::robot {
 

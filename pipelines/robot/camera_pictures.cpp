@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-#include "robot/events.h"
+#include "robot/page/events.h"
 #include "text/json_line.h"
 
 namespace cerberus::robot {

@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstdio>
 
-#include "robot/passwords.h"
+#include "robot/page/passwords.h"
 #include "settings_trial.h"
 #include "text/file.h"
 

@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "robot/client_address.h"
+#include "robot/page/client_address.h"
 
 namespace cerberus::robot {
 

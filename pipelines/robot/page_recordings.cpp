@@ -10,7 +10,7 @@
 
 #include "page_request.h"
 #include "record/archive/folder.h"
-#include "robot/byte_range.h"
+#include "robot/page/byte_range.h"
 
 namespace cerberus::robot {
 

@@ -15,11 +15,11 @@
 #include "camera.h"
 #include "fleet_client.h"
 #include "page_listener.h"
-#include "robot/access.h"
-#include "robot/client_address.h"
 #include "robot/devices.h"
-#include "robot/events.h"
-#include "robot/passwords.h"
+#include "robot/page/access.h"
+#include "robot/page/client_address.h"
+#include "robot/page/events.h"
+#include "robot/page/passwords.h"
 #include "viewer.h"
 
 namespace cerberus::robot {

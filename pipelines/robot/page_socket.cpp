@@ -6,7 +6,7 @@
 
 #include "page_request.h"
 #include "record/archive/folder.h"
-#include "robot/live_settings.h"
+#include "robot/page/live_settings.h"
 #include "text/json_line.h"
 #include "text/numbers.h"
 

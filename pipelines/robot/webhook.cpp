@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "robot/passwords.h"
+#include "robot/page/passwords.h"
 #include "robot/settings_file.h"
 
 namespace cerberus::robot {

@@ -2,7 +2,7 @@
 // A message of an open page.
 #include <cstdint>
 
-#include "robot/page_commands.h"
+#include "robot/page/page_commands.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   cerberus::robot::parse_command({reinterpret_cast<const char*>(data), size});

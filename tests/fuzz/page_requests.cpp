@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "robot/access.h"
-#include "robot/byte_range.h"
+#include "robot/page/access.h"
+#include "robot/page/byte_range.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace cerberus::robot;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "robot/access.h"
+#include "robot/page/access.h"
 
 #include <string>
 #include <vector>
 
 #include "robot/base_drive.h"
-#include "robot/byte_range.h"
-#include "robot/client_address.h"
 #include "robot/devices.h"
 #include "robot/late_frames.h"
+#include "robot/page/byte_range.h"
+#include "robot/page/client_address.h"
 #if HAVE_ARGON2
-#include "robot/passwords.h"
+#include "robot/page/passwords.h"
 #endif
 #include "support/suite.h"  // after the streams: check defines fail()
 

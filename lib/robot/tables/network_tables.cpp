@@ -9,7 +9,7 @@
 
 #include "publish/mqtt_report.h"
 #include "publish/streams/encoders.h"
-#include "robot/client_address.h"
+#include "robot/page/client_address.h"
 
 namespace cerberus::robot {
 

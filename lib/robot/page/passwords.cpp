@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "robot/passwords.h"
+#include "robot/page/passwords.h"
 
 #include <argon2.h>
 #include <sys/random.h>

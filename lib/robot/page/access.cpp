@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "robot/access.h"
+#include "robot/page/access.h"
 
 #include <algorithm>
 #include <utility>

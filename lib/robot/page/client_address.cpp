@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "robot/client_address.h"
+#include "robot/page/client_address.h"
 
 #include <arpa/inet.h>
 

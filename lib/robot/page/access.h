@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "publish/streams/rate_limit.h"
-#include "robot/page_commands.h"
+#include "robot/page/page_commands.h"
 
 namespace cerberus::robot {
 

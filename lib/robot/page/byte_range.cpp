@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "robot/byte_range.h"
+#include "robot/page/byte_range.h"
 
 #include <algorithm>
 #include <charconv>

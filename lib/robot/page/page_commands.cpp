@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "robot/page_commands.h"
+#include "robot/page/page_commands.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 
-#include "robot/live_settings.h"
+#include "robot/page/live_settings.h"
 
 namespace cerberus::robot {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "robot/events.h"
+#include "robot/page/events.h"
 
 #include <sys/stat.h>
 

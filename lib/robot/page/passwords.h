@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "robot/access.h"
+#include "robot/page/access.h"
 
 namespace cerberus::robot {
 
