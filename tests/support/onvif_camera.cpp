@@ -430,6 +430,8 @@ HttpReply OnvifCamera::continuous_move(const xmlNode* request) {
     return fault("InvalidArgVal", "SpaceNotSupported", "space");
   const double x = number(attribute(vector, "x")), y = number(attribute(vector, "y"));
   if (std::abs(x) > 1 || std::abs(y) > 1) return fault("InvalidArgVal", "InvalidVelocity", "velocity");
+  if (!timeout.empty() && faults_.refuses_timeout == "HTTP")
+    return {.status = 400, .body = "Bad Request", .headers = {}};
   if (!timeout.empty() && !faults_.refuses_timeout.empty())
     return fault("InvalidArgVal", faults_.refuses_timeout, "timeout");
   timeout_ = timeout;

@@ -25,7 +25,8 @@ struct OnvifFaults {
   bool degrees = false;                 // it claims the space of positions in degrees, and reports in it
   bool refuses_absolute = false;        // it claims AbsoluteMove and refuses it
   bool claims_degree_velocity = false;  // it claims VelocitySpaceDegrees and refuses it
-  std::string refuses_timeout{};        // by a fault of this code: TimeoutNotSupported is the right one
+  std::string
+      refuses_timeout{};  // by a fault of this code (TimeoutNotSupported is the right one); HTTP: without SOAP
   std::string
       position_space{};  // of the positions that it reports; "none": it names none. Empty: the right one
   bool status_at_zero = false;  // GetStatus always says 0, 0

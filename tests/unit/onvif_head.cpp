@@ -359,7 +359,7 @@ END_TEST
 
 START_TEST(a_camera_that_refuses_a_timeout_by_any_fault_is_driven_without) {
   for (const char* code :
-       {"TimeoutNotSupported", "InvalidArgs", "InvalidVelocity", "ActionNotSupported", "Oops"}) {
+       {"TimeoutNotSupported", "InvalidArgs", "InvalidVelocity", "ActionNotSupported", "Oops", "HTTP"}) {
     std::string warning;
     OnvifFaults faults;
     faults.refuses_timeout = code;

@@ -98,11 +98,11 @@ void OnvifHead::on_move(const SoapAnswer& answer, Time now) {
   const bool home = homing_.busy();  // whose request put no speeds in force
   if (home) homing_.want();
   const bool angle = std::exchange(sent_angle_, false);
-  sent_velocity_ = {};        // it is sent again, or something better
-  if (!answer.fault) return;  // the camera may have obeyed it all the same
+  sent_velocity_ = {};                               // it is sent again, or something better
+  if (!answer.fault && !answer.bad_request) return;  // the camera may have obeyed it all the same
   if (!home) reckoned_.on_refused();
   if (answer.not_authorized()) return log_in_again(now);
-  on_refused_move(angle, *answer.fault, now);
+  on_refused_move(angle, answer.fault.value_or(onvif::Fault{"BadRequest", {"BadRequest"}, "HTTP 400"}), now);
 }
 
 // Cameras refuse a Timeout by any fault, and moves for other reasons by the same ones: what helps is found by trying.

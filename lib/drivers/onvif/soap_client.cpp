@@ -7,7 +7,7 @@ namespace cerberus::drivers::onvif {
 
 namespace {
 
-constexpr int kUnauthorized = 401;
+constexpr int kBadRequest = 400, kUnauthorized = 401;
 
 }  // namespace
 
@@ -55,6 +55,7 @@ std::optional<SoapAnswer> SoapClient::take(Time) {
       answer.fault->reason.clear();
     if (http->status == kUnauthorized && !(answer.fault && answer.fault->not_authorized()))
       answer.fault = Fault{"NotAuthorized", {"NotAuthorized"}, "HTTP 401"};
+    answer.bad_request = http->status == kBadRequest && !answer.body && !answer.fault;
     if (!answer.body && !answer.fault)
       answer.wrong = "it answers what is no SOAP (HTTP " + std::to_string(http->status) + ")";
     return answer;

@@ -24,6 +24,8 @@ struct SoapAnswer {
   std::optional<Fault> fault;           // a fault, or HTTP's 401 as NotAuthorized
   std::string wrong;                    // why there is neither an answer nor a fault, for the user
 
+  bool bad_request = false;  // likewise, by HTTP's 400: the camera did not understand the request
+
   bool good() const { return body && !fault; }
   bool not_authorized() const { return fault && fault->not_authorized(); }
 };
