@@ -27,12 +27,13 @@ class DaimlerDetector : public vision::PersonDetector {
     hog_.setSVMDetector(cv::HOGDescriptor::getDaimlerPeopleDetector());
   }
 
-  void detect(vision::GrayView picture, double scale, std::vector<vision::PersonDetection>& hits) override {
+  std::optional<std::string> detect(vision::GrayView picture, double scale,
+                                    std::vector<vision::PersonDetection>& hits) override {
     // OpenCV's Mat takes no constant data; nothing writes through this one.
     const cv::Mat given(picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.data),
                         static_cast<std::size_t>(picture.stride));
     cv::resize(given, enlarged_, {}, scale, scale, scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
-    if (enlarged_.cols < kWindow.width || enlarged_.rows < kWindow.height) return;
+    if (enlarged_.cols < kWindow.width || enlarged_.rows < kWindow.height) return std::nullopt;
     windows_.clear(), scores_.clear();
     hog_.detectMultiScale(enlarged_, windows_, scores_, threshold_, kWindowStride, {}, kScaleStep, 0);
     const double sx = static_cast<double>(picture.width) / enlarged_.cols;
@@ -43,6 +44,7 @@ class DaimlerDetector : public vision::PersonDetector {
                        sy * kHeight * w.height},
                       scores_[i]});
     }
+    return std::nullopt;
   }
 
  private:

@@ -6,11 +6,12 @@
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
+#include <exception>
 #include <fstream>
 #include <iterator>
 #include <optional>
 #include <span>
-#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "vision/verification/network_output.h"
@@ -23,11 +24,9 @@ namespace {
 constexpr double kBorder = 114;  // grey level around a picture of another aspect, as YOLO models are trained
 constexpr double kWhite = 255;   // becomes 1
 
-// The outputs are none that NetworkReader reads.
-class NotRead : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+std::string not_run(const std::string& name, const std::exception& why) {
+  return "The model " + name + " cannot be run by OpenCV " + CV_VERSION + ": " + why.what();
+}
 
 class ModelDetector : public vision::PersonDetector {
  public:
@@ -38,14 +37,28 @@ class ModelDetector : public vision::PersonDetector {
         outputs_of_net_(net_.getUnconnectedOutLayersNames()),
         reader_(input, person),
         input_(input),
-        threshold_(threshold) {
-    // Once on an empty picture: layers that OpenCV cannot run, and outputs that cannot be read, are reported now.
-    const vision::Image<std::uint8_t> nothing(input);
+        threshold_(threshold) {}
+
+  // Once on an empty picture, before the first frame: layers that OpenCV cannot run are thrown as cv::Exception, outputs
+  // that cannot be read are returned.
+  std::optional<std::string> try_out() {
+    const vision::Image<std::uint8_t> nothing(input_);
     std::vector<vision::PersonDetection> none;
-    detect(nothing.view(), 1, none);
+    return look(nothing.view(), none);
   }
 
-  void detect(vision::GrayView picture, double, std::vector<vision::PersonDetection>& hits) override {
+  // What the first picture did not show is found here.
+  std::optional<std::string> detect(vision::GrayView picture, double,
+                                    std::vector<vision::PersonDetection>& hits) override {
+    try {
+      return look(picture, hits);
+    } catch (const cv::Exception& e) {
+      return not_run(name_, e);
+    }
+  }
+
+ private:
+  std::optional<std::string> look(vision::GrayView picture, std::vector<vision::PersonDetection>& hits) {
     // OpenCV's Mat takes no constant data; nothing writes through this one.
     const cv::Mat given(picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.data),
                         static_cast<std::size_t>(picture.stride));
@@ -68,14 +81,14 @@ class ModelDetector : public vision::PersonDetector {
             {{result.ptr<float>(), result.total()}, {result.size.p, result.size.p + result.dims}});
     const std::size_t before = hits.size();
     if (const auto wrong = reader_.read(outputs_, threshold_, hits))
-      throw NotRead("The model " + name_ + " cannot be used: " + *wrong);
+      return "The model " + name_ + " cannot be used: " + *wrong;
     for (std::size_t i = before; i < hits.size(); ++i) {
       vision::Box& box = hits[i].box;
       box = {box.x / scale, box.y / scale, box.width / scale, box.height / scale};
     }
+    return std::nullopt;
   }
 
- private:
   const std::string name_;
   cv::dnn::Net net_;
   const std::vector<cv::String> outputs_of_net_;
@@ -122,7 +135,9 @@ std::unique_ptr<vision::PersonDetector> make_model_detector(const std::string& m
     person = *line;
   }
   const auto detector = [&](std::span<const std::uint8_t> file_bytes) {
-    return std::make_unique<ModelDetector>(model, file_bytes, *input, person, threshold);
+    auto made = std::make_unique<ModelDetector>(model, file_bytes, *input, person, threshold);
+    if (const auto refusal = made->try_out()) wrong = *refusal, made.reset();
+    return made;
   };
   try {
     try {
@@ -132,10 +147,8 @@ std::unique_ptr<vision::PersonDetector> make_model_detector(const std::string& m
       if (!other) throw;
       return detector(*other);
     }
-  } catch (const NotRead& e) {
-    return wrong = e.what(), nullptr;
   } catch (const std::exception& e) {
-    return wrong = "The model " + model + " cannot be run by OpenCV " + CV_VERSION + ": " + e.what(), nullptr;
+    return wrong = not_run(model, e), nullptr;
   }
 }
 

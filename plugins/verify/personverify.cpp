@@ -204,6 +204,11 @@ void begin_anew(State& state) {
   forget(state);
 }
 
+// At the start, or by the first picture that shows it.
+void refuse_model(GstBaseTransform* transform, const std::string& why) {
+  CERBERUS_ELEMENT_ERROR(transform, RESOURCE, SETTINGS, (why), ("the property model cannot be used"));
+}
+
 gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
   return cerberus::guarded(transform, FALSE, [&]() -> gboolean {
     Private& priv = *cerberus_person_verify_self(transform)->priv;
@@ -225,7 +230,7 @@ gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
                         ? cerberus::plugin::make_model_detector(settings.model, settings.labels, least, wrong)
                         : cerberus::plugin::make_daimler_detector(least);
     if (!detector) {
-      CERBERUS_ELEMENT_ERROR(transform, RESOURCE, SETTINGS, (wrong), ("the property model cannot be used"));
+      refuse_model(transform, wrong);
       return FALSE;
     }
     state.worker.start(std::move(detector));
@@ -332,16 +337,20 @@ void attach(State& state, GstBuffer* buffer, bool persons_only) {
   cerberus_buffer_set_regions(buffer, array);
 }
 
-// A look that is due is taken in: live where its result is there, else it is waited for.
-void take_in(State& state, GstClockTime now) {
-  if (!state.pending) return;
-  if (state.live.value_or(true) ? !state.worker.is_done() : now < state.pending->time + kDelay) return;
+// A look that is due is taken in: live where its result is there, else it is waited for. Returns why the detector
+// cannot be used, where that is so.
+std::optional<std::string> take_in(State& state, GstClockTime now) {
+  if (!state.pending) return std::nullopt;
+  if (state.live.value_or(true) ? !state.worker.is_done() : now < state.pending->time + kDelay)
+    return std::nullopt;
   std::vector<vision::PersonDetection>& hits = state.worker.wait();
   const Pending pending = *std::exchange(state.pending, std::nullopt);
+  if (state.worker.refusal()) return state.worker.refusal();
   for (const vision::PersonDetection& hit : hits)
     GST_LOG("%" GST_TIME_FORMAT ": %.0f,%.0f %.0fx%.0f, score %.2f", GST_TIME_ARGS(pending.time), hit.box.x,
             hit.box.y, hit.box.width, hit.box.height, hit.score);
   state.verifier.apply(pending.look, hits, state.threshold, state.certain);
+  return std::nullopt;
 }
 
 // The next look, where one is due, from the mapped frame.
@@ -401,7 +410,10 @@ GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, G
       std::copy_n(camera->matrix, motion.m.size(), motion.m.begin());
     read_regions(state, buffer);
     state.verifier.update(state.picture.view(), size, motion, seconds, state.candidates);
-    take_in(state, now);
+    if (const auto refusal = take_in(state, now)) {
+      refuse_model(transform, *refusal);
+      return GST_FLOW_ERROR;
+    }
     look(state, source, now, settings);
     frame.unmap();
     attach(state, buffer, settings.require == REQUIRE_PERSON);

@@ -2,6 +2,7 @@
 // Writes a small ONNX model by hand: protocol buffers with the field numbers of onnx.proto (ONNX project, IR version 7).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <initializer_list>
@@ -68,22 +69,22 @@ inline std::string reshape(const std::string& input, const std::string& output,
   return node("Reshape", {input, output + "_shape"}, output) +
          bytes(5, tensor(output + "_shape", 7, {static_cast<int>(shape.size())}, lengths));
 }
-// Convolution of weights 0: the numbers, once for each cell of 8 x 8 pixels.
-inline std::string cells(const std::string& name, const std::vector<float>& numbers) {
+// Convolution: the numbers, once for each cell of 8 x 8 pixels. light: weight of each pixel in the last number.
+inline std::string cells(const std::string& name, const std::vector<float>& numbers, float light = 0) {
   const int n = static_cast<int>(numbers.size());
+  std::vector<float> of_pixels(static_cast<std::size_t>(n) * 3 * 8 * 8, 0);
+  std::fill_n(of_pixels.rbegin(), 3 * 8 * 8, light);
   return node("Conv", {"images", name + "_weights", name + "_bias"}, name,
               integers("kernel_shape", {8, 8}) + integers("strides", {8, 8})) +
-         weights(name + "_weights", {n, 3, 8, 8},
-                 std::vector<float>(static_cast<std::size_t>(n) * 3 * 8 * 8, 0)) +
-         weights(name + "_bias", {n}, numbers);
+         weights(name + "_weights", {n, 3, 8, 8}, of_pixels) + weights(name + "_bias", {n}, numbers);
 }
 
 // A network that answers every picture of `side` x `side` pixels with the same column of numbers, (side / 8)^2 times:
-// 1 x numbers x boxes, as YOLO 8 does.
-inline std::string constant_yolo(int side, const std::vector<float>& numbers) {
+// 1 x numbers x boxes, as YOLO 8 does. light: of cells().
+inline std::string constant_yolo(int side, const std::vector<float>& numbers, float light = 0) {
   const int n = static_cast<int>(numbers.size()), boxes = side / 8 * (side / 8);
-  return model(cells("cells", numbers) + reshape("cells", "output0", {1, n, boxes}) + bytes(2, "constant") +
-               bytes(11, value_info("images", {1, 3, side, side})) +
+  return model(cells("cells", numbers, light) + reshape("cells", "output0", {1, n, boxes}) +
+               bytes(2, "constant") + bytes(11, value_info("images", {1, 3, side, side})) +
                bytes(12, value_info("output0", {1, n, boxes})));
 }
 

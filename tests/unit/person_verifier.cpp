@@ -451,15 +451,18 @@ namespace {
 
 class Scripted : public PersonDetector {
  public:
-  void detect(GrayView picture, double scale, std::vector<PersonDetection>& hits) override {
+  std::optional<std::string> detect(GrayView picture, double scale,
+                                    std::vector<PersonDetection>& hits) override {
     if (scale > 9) throw std::runtime_error("too large");
+    if (scale > 8) return "The scale is refused.";
     hits.push_back({{0, 0, double(picture.width), double(picture.height)}, scale});
+    return std::nullopt;
   }
 };
 
 }  // namespace
 
-START_TEST(the_worker_returns_what_its_detector_found_or_threw) {
+START_TEST(the_worker_returns_what_its_detector_found_refused_or_threw) {
   LookWorker worker;
   worker.start(std::make_unique<Scripted>());
   for (const double scale : {2.0, 3.0}) {
@@ -468,10 +471,14 @@ START_TEST(the_worker_returns_what_its_detector_found_or_threw) {
     worker.begin({{{{7, 5, 30, 60, scale}, {100, 90, 10, 20, 1}}}, 2});
     const auto& hits = worker.wait();
     ck_assert_uint_eq(hits.size(), 2);
+    ck_assert(!worker.refusal());
     ck_assert_double_eq(hits[0].score, scale);
     ck_assert(hits[0].box.x == 7 && hits[0].box.y == 5 && hits[0].box.height == 60);  // in the frame
     ck_assert(hits[1].score == 1 && hits[1].box.x == 100 && hits[1].box.y == 90 && hits[1].box.height == 20);
   }
+  worker.begin({{{{0, 0, 30, 60, 9}, {0, 0, 10, 20, 1}}}, 2});
+  worker.wait();
+  ck_assert(worker.refusal() == "The scale is refused.");
   worker.begin({{{{0, 0, 30, 60, 10}}}, 1});
   bool thrown = false;
   try {
@@ -538,6 +545,6 @@ int main() {
        a_person_without_a_track_whom_a_look_misses_is_left_out_and_comes_back_with_its_identity,
        a_region_without_identity_keeps_that_of_the_one_before_which_it_overlaps_most,
        following_and_choosing_allocate_nothing,
-       the_worker_returns_what_its_detector_found_or_threw,
+       the_worker_returns_what_its_detector_found_refused_or_threw,
        a_person_whom_no_track_shows_is_found_where_the_picture_changes});
 }

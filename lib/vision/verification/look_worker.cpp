@@ -52,12 +52,13 @@ void LookWorker::run() {
     if (stage_ == Stage::ended) return;
     guard.unlock();
     hits_.clear();
+    refusal_.reset();
     std::exception_ptr failure;
     try {
-      for (std::size_t i = 0; i < regions_.count; ++i) {
+      for (std::size_t i = 0; i < regions_.count && !refusal_; ++i) {
         const LookRegion& region = regions_.all[i];
         const std::size_t earlier = hits_.size();
-        detector_->detect(pictures_[i].view(), region.scale, hits_);
+        refusal_ = detector_->detect(pictures_[i].view(), region.scale, hits_);
         for (PersonDetection& hit : std::span(hits_).subspan(earlier))
           hit.box.x += region.x, hit.box.y += region.y;
       }

@@ -7,6 +7,8 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -38,6 +40,8 @@ class LookWorker {
   // Waits for the look in progress, and returns its hits, in pixels of the frame; they live until the next begin().
   // Throws what the detector has thrown.
   std::vector<PersonDetection>& wait();
+  // After wait(): why the detector cannot be used; nullopt: it can.
+  const std::optional<std::string>& refusal() const { return refusal_; }
 
  private:
   enum class Stage { idle, asked, done, ended };
@@ -47,6 +51,7 @@ class LookWorker {
   std::array<Image<std::uint8_t>, LookRegions::kMost> pictures_;
   LookRegions regions_;
   std::vector<PersonDetection> hits_;
+  std::optional<std::string> refusal_;
   std::exception_ptr failure_;
   mutable std::mutex lock_;  // of stage_
   std::condition_variable changed_;

@@ -2,6 +2,8 @@
 // Finds people in one picture. plugins/verify implements it with OpenCV.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "vision/geometry/box.h"
@@ -18,9 +20,10 @@ class PersonDetector {
  public:
   virtual ~PersonDetector() = default;
   // Appends every hit in `picture`, several for one person; the order is of no account. scale: by which the picture is
-  // to be enlarged so that the person that is looked for has VerificationParameters::look_height. Throws
-  // std::exception.
-  virtual void detect(GrayView picture, double scale, std::vector<PersonDetection>& hits) = 0;
+  // to be enlarged so that the person that is looked for has VerificationParameters::look_height. Where the detector
+  // turns out to be none that can be used, returns a sentence that says why. Throws std::exception.
+  virtual std::optional<std::string> detect(GrayView picture, double scale,
+                                            std::vector<PersonDetection>& hits) = 0;
 };
 
 // Replaces the hits by one detection a person, surest first. Hits that overlap the surest one by more than half of
