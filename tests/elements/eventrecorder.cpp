@@ -228,6 +228,26 @@ GST_START_TEST(a_file_that_is_never_closed_plays_up_to_its_last_second) {
 }
 GST_END_TEST
 
+// What kill -9 leaves .2 s after the event began.
+GST_START_TEST(a_file_plays_from_its_fifth_frame_on_whatever_happens) {
+  Rig rig;
+  g_object_set(rig.element, "pre-roll", guint64{0}, nullptr);
+  rig.start();
+  rig.play_to(20);
+  rig.start_event();
+  rig.play_to(24);
+  g_autoptr(GstStructure) started = rig.wait_for_file("started");
+  const std::string file = gst_structure_get_string(started, "location");
+  std::vector<Frame> frames;
+  for (int k = 0; k < 1000 && frames.empty(); ++k) {
+    g_usleep(10 * 1000);
+    try_to_read(file, frames);
+  }
+  fail_unless(numbers_of(frames) == range(20, 20 + static_cast<guint32>(frames.size()) - 1) &&
+              frames.size() >= 2);
+}
+GST_END_TEST
+
 GST_START_TEST(stopping_without_end_of_stream_completes_the_file) {
   Rig rig;
   rig.start();
@@ -704,6 +724,7 @@ static Suite* eventrecorder_suite() {
   tcase_add_test(tests, files_are_readable_by_owner_and_group_only);
   tcase_add_test(tests, the_pre_roll_is_on_disk_before_another_frame_comes);
   tcase_add_test(tests, a_file_that_is_never_closed_plays_up_to_its_last_second);
+  tcase_add_test(tests, a_file_plays_from_its_fifth_frame_on_whatever_happens);
   tcase_add_test(tests, stopping_without_end_of_stream_completes_the_file);
   tcase_add_test(tests, the_end_reaches_the_application_of_a_bin_that_has_forgotten_that_it_plays);
   tcase_add_test(tests, the_end_is_posted_again_after_a_pause);
