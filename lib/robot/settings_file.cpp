@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "publish/streams/users.h"
-#include "robot/camera_settings.h"
-#include "robot/rivals.h"
-#include "robot/table_reader.h"
+#include "robot/tables/camera_settings.h"
 #include "robot/tables/network_tables.h"
+#include "robot/tables/rivals.h"
+#include "robot/tables/table_reader.h"
 #include "text/file.h"
 
 namespace cerberus::robot {

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "robot/settings.h"
-#include "robot/table_reader.h"
+#include "robot/tables/table_reader.h"
 
 namespace cerberus::robot {
 

@@ -14,9 +14,9 @@
 #include <string>
 
 #include "robot/backoff.h"
-#include "robot/late_frames.h"
 #include "robot/pipeline_text.h"
 #include "robot/settings.h"
+#include "robot/source/late_frames.h"
 #include "rtsp_output.h"
 #include "rtsp_source.h"
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "robot/devices.h"
+#include "robot/page/devices.h"
 #include "robot/settings.h"
 
 namespace cerberus::robot {

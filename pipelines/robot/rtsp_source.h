@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "robot/rtsp_fault.h"
 #include "robot/settings.h"
+#include "robot/source/rtsp_fault.h"
 
 namespace cerberus::robot {
 

@@ -4,7 +4,7 @@
 #include <gio/gio.h>
 #include <gst/gst.h>
 #include <unistd.h>
-#include <cerberus/private/settings_query.hpp>
+#include "shared/settings_query.hpp"
 
 #include <algorithm>
 #include <cerrno>

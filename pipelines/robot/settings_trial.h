@@ -4,7 +4,7 @@
 #pragma once
 
 #include "robot/settings.h"
-#include "robot/table_reader.h"
+#include "robot/tables/table_reader.h"
 
 namespace cerberus::robot {
 

@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 
-#include "cerberus/private/settings_query.hpp"
 #include "damage_mark.hpp"
 #include "shared/camera_mount.hpp"
 #include "shared/camera_path.hpp"
@@ -16,6 +15,7 @@
 #include "shared/complaint.hpp"
 #include "shared/properties.hpp"
 #include "shared/record.hpp"
+#include "shared/settings_query.hpp"
 #include "shared/single_fields.hpp"
 #include "shared/video.hpp"
 #include "vision/frame_history.h"

@@ -71,7 +71,6 @@
 
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/follow_query.hpp"
-#include "cerberus/private/settings_query.hpp"
 #include "fusion/decisions.h"
 #include "fusion/rule_check.h"
 #include "fusion/rule_file.h"
@@ -81,6 +80,7 @@
 #include "sensing/pir_model.h"
 #include "settings.hpp"
 #include "shared/pose_thread.hpp"
+#include "shared/settings_query.hpp"
 #include "shared/stamps.hpp"
 #include "shared/tracks.hpp"
 #include "text/numbers.h"

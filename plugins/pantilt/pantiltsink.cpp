@@ -103,12 +103,12 @@
 
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/follow_query.hpp"
-#include "cerberus/private/settings_query.hpp"
 #include "head_session.hpp"
 #include "shared/camera_mount.hpp"
 #include "shared/camera_path.hpp"
 #include "shared/complaint.hpp"
 #include "shared/confirm_playing.hpp"
+#include "shared/settings_query.hpp"
 #include "shared/times.hpp"
 #include "shared/tracks.hpp"
 

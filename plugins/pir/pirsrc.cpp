@@ -59,7 +59,7 @@
 #include <cerberus/pir.h>
 #include <gst/base/gstpushsrc.h>
 #include <cerberus/private/element.hpp>
-#include <cerberus/private/settings_query.hpp>
+#include "shared/settings_query.hpp"
 
 #include <chrono>
 #include <condition_variable>

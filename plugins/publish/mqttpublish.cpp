@@ -55,13 +55,13 @@
 #include <vector>
 
 #include "cerberus/private/element.hpp"
-#include "cerberus/private/settings_query.hpp"
 #include "mqtt_client.hpp"
 #include "publish/burst_limit.h"
 #include "publish/mqtt_report.h"
 #include "shared/camera_mount.hpp"
 #include "shared/clock_times.hpp"
 #include "shared/properties.hpp"
+#include "shared/settings_query.hpp"
 #include "shared/stamps.hpp"
 #include "text/file.h"
 #include "text/json_line.h"

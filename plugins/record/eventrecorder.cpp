@@ -92,10 +92,10 @@
 #include <cerberus/cerberus.h>
 
 #include "cerberus/private/element.hpp"
-#include "cerberus/private/settings_query.hpp"
 #include "playing_gate.hpp"
 #include "session.hpp"
 #include "shared/clock_times.hpp"
+#include "shared/settings_query.hpp"
 #include "stream_end.hpp"
 
 namespace {

@@ -102,7 +102,7 @@ ARROWS = VISION | {
     'sim': ('vision', 'sensing', 'motion'),
     'record': ('vision',),
     'publish': (),
-    'robot': ('record', 'publish'),
+    'robot': ('record', 'publish', 'drivers'),
 }
 BELOW_ALL = ('text', 'threads')
 FOR_ALL = {'sensing/angles.h'}  # degrees and radians

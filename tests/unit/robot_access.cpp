@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "robot/base_drive.h"
-#include "robot/devices.h"
-#include "robot/late_frames.h"
 #include "robot/page/byte_range.h"
 #include "robot/page/client_address.h"
+#include "robot/page/devices.h"
+#include "robot/source/late_frames.h"
 #if HAVE_ARGON2
 #include "robot/page/passwords.h"
 #endif

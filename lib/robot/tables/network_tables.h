@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "robot/camera_settings.h"
-#include "robot/table_reader.h"
+#include "robot/tables/camera_settings.h"
+#include "robot/tables/table_reader.h"
 
 namespace cerberus::robot {
 

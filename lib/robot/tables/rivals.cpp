@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "robot/rivals.h"
+#include "robot/tables/rivals.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "robot/camera_settings.h"
+#include "robot/tables/camera_settings.h"
 
 #include <algorithm>
 #include <array>

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "robot/table_reader.h"
+#include "robot/tables/table_reader.h"
 
 namespace cerberus::robot {
 

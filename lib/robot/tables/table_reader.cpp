@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "robot/table_reader.h"
+#include "robot/tables/table_reader.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "robot/devices.h"
+#include "robot/page/devices.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "robot/rtsp_fault.h"
+#include "robot/source/rtsp_fault.h"
 
 #include <algorithm>
 #include <array>
