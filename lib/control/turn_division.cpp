@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cerberus::control {
 
@@ -11,11 +12,13 @@ std::optional<Turn> TurnDivision::head(motion::Time taken, const motion::PanTilt
   const Parameters& p = parameters_;
   const double step = last_ ? motion::seconds(taken - *last_) : 0;
   last_ = taken;
-  if (speed >= fastest_ || motion::seconds(taken - fast_) >= p.settle) {
-    fastest_ = speed;
-    fast_ = taken;
+  if (motion::seconds(taken - span_) >= p.settle) {
+    span_ = taken;
+    fast_before_ = std::exchange(fast_now_, 0);
   }
-  const bool rests = fastest_ == 0 && reckoned.pan == 0 && reckoned.tilt == 0;
+  fast_now_ = std::max(fast_now_, speed);
+  const double fastest = std::max(fast_now_, fast_before_);
+  const bool rests = fastest == 0 && reckoned.pan == 0 && reckoned.tilt == 0;
   if (!(step > 0 && step <= p.longest_step)) {
     rate_ = calm_ = 0;
     base_turns_ = false;
@@ -27,7 +30,7 @@ std::optional<Turn> TurnDivision::head(motion::Time taken, const motion::PanTilt
     const double standing = std::max(p.standing, p.share * std::abs(reckoned.pan) / step);
     calm_ = std::abs(rate_) < standing ? calm_ + step : 0;
     if (calm_ >= p.calm) base_turns_ = false;
-    if (std::abs(rate_) > p.turning + p.most_error * fastest_) base_turns_ = true;
+    if (std::abs(rate_) > p.turning + p.most_error * fastest) base_turns_ = true;
   }
   if (rests) return std::nullopt;
   if (!base_turns_) return seen;

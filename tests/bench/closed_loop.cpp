@@ -52,6 +52,7 @@ sim::Score run(FollowingLaw& law, sim::PanHead& head, const sim::Scene& scene, s
   const Time delay = time_of(traits.delay);
   std::deque<sim::Picture> coming;
   Seen seen;
+  seen.base_reported = scene.report != sim::BaseReport::none;
   for (Time now{}; now < time_of(scene.length); now += milliseconds(1)) {
     const double t = motion::seconds(now), yaw = scene.base(t);
     head.elapse(now);

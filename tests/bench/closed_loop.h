@@ -19,7 +19,8 @@ struct Seen {
   sim::Picture picture;
   double base_turn = 0;  // since the picture before, as reported
   double base_yaw = 0;   // the same as a sum
-  bool sector = false;   // a sensor's sector says where the person is: at `bearing` from the base
+  bool base_reported = false;
+  bool sector = false;  // a sensor's sector says where the person is: at `bearing` from the base
   double bearing = 0;
 };
 

@@ -100,7 +100,7 @@ void ProjectLaw::on_picture(const Seen& seen, Time now) {
   frame.now = now;
   frame.lens = lens_;
   const auto moved = vision::Transform::translation(-picture.turn / pixel_turn_, 0);
-  frame.motion = control::PictureMotion{moved, 1, kPicture, seen.base_turn};
+  frame.motion = control::PictureMotion{moved, 1, kPicture, seen.base_turn, seen.base_reported};
   act([&](auto& out) { controller_.frame(frame, out); });
   next_serve_ = now;
 }
