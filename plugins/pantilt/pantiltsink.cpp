@@ -27,8 +27,11 @@
  * of `horizontal-fov` and is part of its poses (`field-of-view`); `lock-zoom` keeps the zoom instead. With neither a
  * warning says that every angle depends on it.
  *
- * The newest frame counts: one whose running time is not newer than the last one's is dropped. The element never waits
- * for the clock and sends no QoS events upstream.
+ * The newest frame counts: one whose running time is not newer than the last one's is dropped. A single time stamp more
+ * than 10 s ahead is taken for a mistake, unless the clock of a live pipeline has reached it: the frame counts as if it
+ * followed at the usual distance. Where the times have gone back, the third frame begins anew; in a live pipeline only if
+ * the clock has not reached the time from which they went back. The element never waits for the clock and sends no QoS
+ * events upstream.
  *
  * Each pose of the head goes upstream as the event `cerberus-pose`. In a live pipeline, or with a real head, it is sent
  * at every change of plan and at 50 Hz while the head moves, 5 Hz while it rests, and when no frame comes for
@@ -103,6 +106,7 @@
 
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/follow_query.hpp"
+#include "control/frame_order.h"
 #include "head_session.hpp"
 #include "shared/camera_mount.hpp"
 #include "shared/camera_path.hpp"
@@ -130,9 +134,10 @@ struct State {  // streaming thread only
   Complaint complaint;                // about the caps
   std::vector<fusion::Track> tracks;  // on the frame
   vision::CameraFollower camera;      // since the last frame
-  std::optional<Time> taken;          // running time of the last frame that repeats none
-  bool began_late = false;            // the stream, after the sink was set to PLAYING
-  bool live_known = false;            // whether upstream is live
+  control::FrameOrder order;
+  std::optional<Time> taken;  // running time of the last frame that repeats none
+  bool began_late = false;    // the stream, after the sink was set to PLAYING
+  bool live_known = false;    // whether upstream is live
 };
 
 struct Private {
@@ -223,6 +228,12 @@ std::optional<control::PictureMotion> motion_of(State& state, GstBuffer* buffer,
   return control::PictureMotion{step.motion.transform, motion->confidence, size, base_yaw, reported};
 }
 
+// The next frame follows no other.
+void begin_anew(Private& self) {
+  self.session.controller.forget();
+  self.state.taken.reset();
+}
+
 GstFlowReturn on_frame(Private& self, GstBuffer* buffer, GstClockTime pts, GstClockTime duration) {
   HeadSession& session = self.session;
   // In PAUSED nothing is done; the base class would let a gap through, and a frame that comes just then.
@@ -233,12 +244,23 @@ GstFlowReturn on_frame(Private& self, GstBuffer* buffer, GstClockTime pts, GstCl
   const GstVideoInfo& info = self.state.info;
   const Time length = running_length(duration, info, session.sink->segment);
   const auto newest = session.controller.newest();
-  const auto taken = running_time(session, pts, newest, length);
-  if (!taken || (newest && *taken <= *newest)) {
+  const auto time = running_time(session, pts, newest, length);
+  control::FrameOrder::Step step;
+  if (time && buffer)
+    step = self.state.order.next({.time = *time,
+                                  .nominal = motion::seconds(length),
+                                  .marked = GST_BUFFER_IS_DISCONT(buffer) != FALSE,
+                                  .newest = newest,
+                                  .now = session.clock_driven ? session.now() : std::nullopt});
+  else if (time)
+    step = self.state.order.gap(*time, newest);
+  const std::optional<Time> taken = step.taken;
+  if (!taken) {
     GST_DEBUG_OBJECT(session.sink, "dropped: %" GST_TIME_FORMAT " is not newer than the last",
                      GST_TIME_ARGS(pts));
     return GST_FLOW_OK;
   }
+  if (step.anew) begin_anew(self);
   control::HeadController::Frame frame{
       .seen = std::nullopt,
       .running = *taken,
@@ -306,12 +328,13 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
   const gboolean done = cerberus_pan_tilt_sink_parent_class()->event(sink, event);
   guarded(sink, [&] {
     if (type == GST_EVENT_FLUSH_STOP) {
-      session.controller.forget();
-      self.state.taken.reset();
+      begin_anew(self);
+      self.state.order.forget();
       if (session.playing && session.watched) session.resume();
     }
     if (type == GST_EVENT_GAP && done) on_frame(self, nullptr, from, length);
     if (type != GST_EVENT_SEGMENT || !done) return;
+    self.state.order.mark();
     ask_whether_live(self);
     const Time begin = running_time(session, sink->segment.start, {}, {}).value_or(Time::zero());
     const auto announce = [&](HeadSession::Reports& out) { return session.controller.announce(begin, out); };

@@ -213,6 +213,40 @@ GST_START_TEST(a_frame_that_is_not_newer_is_dropped) {
 }
 GST_END_TEST
 
+// One frame is stamped three hours off; the ones behind it are obeyed as if there were none, and each is answered until
+// its own time plus the latency.
+GST_START_TEST(a_single_time_stamp_that_is_far_off_does_not_blind_the_head) {
+  Rig rig;
+  act(rig, CERBERUS_FUSION_TURN_RIGHT, 100000, 10);
+  rig.messages();
+  int at = 100010;
+  for (const GstClockTimeDiff off : {3 * 3600 * GST_SECOND, -3600 * GST_SECOND}) {
+    GstBuffer* buffer = frame_at(at * kFrame + off);
+    add(buffer, CERBERUS_FUSION_TURN_RIGHT);
+    rig.push(buffer);
+    rig.poses();
+    for (int k = at + 1; k < at + 20; ++k) {
+      const auto poses = act(rig, k < at + 10 ? CERBERUS_FUSION_TURN_LEFT : CERBERUS_FUSION_TURN_RIGHT, k, 1);
+      fail_if(poses.empty(), "frame %d", k);
+      fail_unless_equals_uint64(poses.back().valid_until, k * kFrame + 60 * GST_MSECOND);
+    }
+    fail_unless(rig.states() == "turning turning");
+    at += 20;
+  }
+}
+GST_END_TEST
+
+// The times of a recording that begins anew without a word: from the third frame on the head obeys.
+GST_START_TEST(times_that_have_gone_back_blind_the_head_for_two_frames) {
+  Rig rig;
+  act(rig, CERBERUS_FUSION_TURN_RIGHT, 100000, 10);
+  rig.messages();
+  fail_unless(act(rig, CERBERUS_FUSION_TURN_LEFT, 0, 2).empty());
+  fail_if(act(rig, CERBERUS_FUSION_TURN_LEFT, 2, 1).empty());
+  fail_unless(rig.states() == "turning");
+}
+GST_END_TEST
+
 GST_START_TEST(frames_without_time_stamps_count_at_the_frame_rate) {
   Rig rig;
   for (int k = 0; k < 26; ++k) {
@@ -470,6 +504,8 @@ Suite* pantiltsink_suite() {
   tcase_add_test(tests, without_fusion_tracks_are_followed_and_later_the_head_returns);
   tcase_add_test(tests, the_first_target_is_a_choice_and_then_kept);
   tcase_add_test(tests, a_frame_that_is_not_newer_is_dropped);
+  tcase_add_test(tests, a_single_time_stamp_that_is_far_off_does_not_blind_the_head);
+  tcase_add_test(tests, times_that_have_gone_back_blind_the_head_for_two_frames);
   tcase_add_test(tests, frames_without_time_stamps_count_at_the_frame_rate);
   tcase_add_test(tests, a_gap_keeps_the_pace);
   tcase_add_test(tests, a_frame_may_come_in_the_middle_of_a_gap);

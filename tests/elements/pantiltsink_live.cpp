@@ -104,6 +104,25 @@ GST_START_TEST(when_frames_stay_away_the_head_stops) {
 }
 GST_END_TEST
 
+// The clock stands at two hours. A frame of three hours later is one of now; frames of an hour ago move nothing, even
+// where they come in a row.
+GST_START_TEST(a_single_time_stamp_that_is_far_off_blinds_no_live_head_and_old_frames_move_none) {
+  Rig rig("watchdog-timeout=0", Source::live);
+  const GstClockTime now = 7200 * GST_SECOND;
+  gst_harness_set_time(rig.harness, now);
+  for (int k = 10; k > 0; --k) rig.push(frame_with(CERBERUS_FUSION_HOLD, now - k * kFrame));
+  rig.messages();
+  rig.push(frame_with(CERBERUS_FUSION_HOLD, now + 3 * 3600 * GST_SECOND));
+  rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, now + kFrame));
+  fail_unless(rig.states() == "turning");
+  for (int k = 0; k < 10; ++k)
+    rig.push(frame_with(CERBERUS_FUSION_ZERO, now - 3600 * GST_SECOND + k * kFrame));
+  fail_unless(rig.states() == "");
+  rig.push(frame_with(CERBERUS_FUSION_HOLD, now + 2 * kFrame));
+  fail_unless(rig.states() == "holding");
+}
+GST_END_TEST
+
 GST_START_TEST(when_frames_stay_away_an_order_is_over) {
   Rig rig("watchdog-timeout=300000000 max-speed=20", Source::live);
   rig.push(frame_with(CERBERUS_FUSION_TURN_LEFT, 0));
@@ -420,6 +439,7 @@ Suite* pantiltsink_live_suite() {
   tcase_add_test(tests, a_moving_head_tells_where_it_is_fifty_times_a_second);
   tcase_add_test(tests, a_piece_that_ends_is_followed_by_the_next_at_that_time);
   tcase_add_test(tests, when_frames_stay_away_the_head_stops);
+  tcase_add_test(tests, a_single_time_stamp_that_is_far_off_blinds_no_live_head_and_old_frames_move_none);
   tcase_add_test(tests, when_frames_stay_away_an_order_is_over);
   tcase_add_test(tests, in_pause_a_head_with_a_clock_stands_still);
   tcase_add_test(tests, an_order_that_goes_on_says_so);
