@@ -24,6 +24,9 @@
  * - Not live: a frame waits until readings, GAP events or EOS of every linked PIR pad cover its running time, so that
  *   every run gives the same. A pad without data for `max-wait` causes a warning, is invalid, and is not waited for until
  *   data comes. Video and PIR need a thread each (a `queue`) where one element makes both.
+ * - A single video time stamp more than 10 s ahead or 1 s back is taken for a mistake, unless a DISCONT, a segment or a
+ *   gap lies before it, or it is newer and the clock of a live pipeline has reached it: the frame counts as if it followed
+ *   at the usual distance. The third such frame in a row is believed.
  * - A PIR source that is not live keeps its last reading when it ends (EOS). One that is live (also a recording with
  *   `is-live`) beside a live video keeps it for `lost-after`.
  *
@@ -76,6 +79,7 @@
 #include "fusion/rule_file.h"
 #include "fusion/settings_check.h"
 #include "inputs.hpp"
+#include "motion/head_limits.h"
 #include "pir_pad.hpp"
 #include "sensing/pir_model.h"
 #include "settings.hpp"
@@ -85,6 +89,7 @@
 #include "shared/tracks.hpp"
 #include "text/numbers.h"
 #include "translation.hpp"
+#include "vision/clocked_times.h"
 
 GST_DEBUG_CATEGORY_STATIC(pirfusion_debug);
 #define GST_CAT_DEFAULT pirfusion_debug
@@ -107,7 +112,8 @@ struct State {  // video thread only
   GstSegment segment;
   std::optional<bool> live;  // nothing: not known
   Time time{};               // of the last frame
-  double base_sent = 0;      // to the PIR pads, degrees a second
+  vision::ClockedTimes times;
+  double base_sent = 0;  // to the PIR pads, degrees a second
   Time base_sent_at{};
   int rules_sensors = 0;  // of which the rules speak; 0: any number
   fusion::SettingsCheck misfits;
@@ -262,6 +268,19 @@ void pass_base_on(CerberusPirFusion* self, Time time, const SensorSnapshot& mome
   push_to_pirs(self, event);
 }
 
+// When a frame was taken. A frame without a time is as late as the one before.
+Time time_of_frame(CerberusPirFusion* self, GstBuffer* buffer) {
+  State& state = *self->priv->state;
+  const auto time = running_time(state.segment, GST_BUFFER_PTS(buffer));
+  if (!time) return state.time;
+  const auto length = known_time(GST_BUFFER_DURATION(buffer));
+  return state.times.next({.time = *time,
+                           .nominal = length ? motion::seconds(*length) : 0,
+                           .marked = GST_BUFFER_IS_DISCONT(buffer) != FALSE,
+                           .last = state.time,
+                           .now = state.live != false ? clock_now(self) : std::nullopt});
+}
+
 GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
   auto* self = cerberus_pir_fusion_self(parent);
   return guarded(self, GST_FLOW_ERROR, [&] {
@@ -270,9 +289,8 @@ GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
     State& state = *priv.state;
     apply_settings(self);
     const Settings settings = priv.settings.snapshot();
-    // A frame without a time is as late as the one before.
-    state.time = running_time(state.segment, GST_BUFFER_PTS(buffer.get())).value_or(state.time);
     if (!state.live) state.live = is_live(pad);
+    state.time = time_of_frame(self, buffer.get());
 
     std::vector<fusion::SilentSource> silent;
     const bool waits = state.live == false;
@@ -318,6 +336,7 @@ gboolean video_event(GstPad* pad, GstObject* parent, GstEvent* event) {
       if (state.segment.format != GST_FORMAT_UNDEFINED && !gst_segment_is_equal(segment, &state.segment))
         priv.decisions.begin_anew();
       gst_segment_copy_into(segment, &state.segment);
+      state.times.mark();
       state.live.reset();
       break;
     }
@@ -328,9 +347,13 @@ gboolean video_event(GstPad* pad, GstObject* parent, GstEvent* event) {
     case GST_EVENT_FLUSH_STOP:
       priv.decisions.begin_anew();
       state.time = Time::zero();
+      state.times.forget();
       gst_segment_init(&state.segment, GST_FORMAT_UNDEFINED);
       priv.inputs.begin_video();
       priv.inputs.set_flushing(false);
+      break;
+    case GST_EVENT_GAP:
+      state.times.mark();
       break;
     case GST_EVENT_EOS:
       priv.inputs.end_video();

@@ -250,7 +250,7 @@ GstFlowReturn on_frame(Private& self, GstBuffer* buffer, GstClockTime pts, GstCl
     step = self.state.order.next({.time = *time,
                                   .nominal = motion::seconds(length),
                                   .marked = GST_BUFFER_IS_DISCONT(buffer) != FALSE,
-                                  .newest = newest,
+                                  .last = newest,
                                   .now = session.clock_driven ? session.now() : std::nullopt});
   else if (time)
     step = self.state.order.gap(*time, newest);

@@ -172,8 +172,30 @@ GST_START_TEST(without_an_answer_about_liveness_no_frame_waits) {
         nullptr, nullptr);
   rig.read(0, {1, 0, 0});
   assert_says(values(rig, 500 * kMs), "100");
-  rig.read(60 * GST_SECOND, {0, 1, 0});
-  assert_says(values(rig, 61 * GST_SECOND), "010");
+  rig.read(6 * GST_SECOND, {0, 1, 0});
+  assert_says(values(rig, 7 * GST_SECOND), "010");
+}
+GST_END_TEST
+
+// A frame stamped three hours later is one of now: no sensor has been silent since. After a real pause of a minute they
+// have.
+GST_START_TEST(live_a_single_time_stamp_that_is_far_off_silences_no_sensor) {
+  Rig rig;
+  rig.add_pir();
+  gst_harness_use_testclock(rig.video);
+  GstClockTime time = 7200 * GST_SECOND;
+  for (int k = 0; k < 20; ++k, time += 40 * kMs) {
+    gst_harness_set_time(rig.video, time);
+    if (k % 5 == 0) rig.read(time, {1, 0, 0});
+    assert_says(values(rig, k == 12 ? time + 3 * 3600 * GST_SECOND : time), "100");
+  }
+  fail_unless(rig.warning().empty());
+  time += 60 * GST_SECOND;
+  gst_harness_set_time(rig.video, time);
+  rig.posted();
+  assert_says(values(rig, time), "222");
+  const auto posted = rig.posted();
+  fail_unless(!posted.empty() && posted[0].starts_with(std::to_string(time / kMs) + ":"));
 }
 GST_END_TEST
 
@@ -189,6 +211,23 @@ GST_START_TEST(not_live_a_frame_waits_for_the_readings_of_its_time) {
     rig.read(begin + 150 * kMs, {0, 0, 1});
     fail_unless_equals_int(frame_in.flow(), GST_FLOW_OK);
     assert_says(text(sensors(rig.decision())), "010");
+  }
+}
+GST_END_TEST
+
+// Readings of 2 s, from two hours on. A frame that is stamped three hours later or one earlier takes its place between its
+// neighbours.
+GST_START_TEST(not_live_a_single_time_stamp_that_is_far_off_is_not_waited_for) {
+  for (const GstClockTimeDiff off : {3 * 3600 * GST_SECOND, -3600 * GST_SECOND}) {
+    Rig rig(false, "max-wait=100000000");
+    rig.add_pir();
+    const GstClockTime begin = 7200 * GST_SECOND;
+    for (int k = 0; k <= 20; ++k) rig.read(begin + k * 100 * kMs, {guint8(k < 10), guint8(k >= 10), 0});
+    for (int k = 0; k < 50; ++k) {
+      const GstClockTime time = begin + k * 40 * kMs;
+      assert_says(values(rig, k == 12 ? time + off : time), k < 25 ? "100" : "010");
+    }
+    fail_unless(rig.warning().empty());
   }
 }
 GST_END_TEST
@@ -425,9 +464,11 @@ static Suite* pirfusion_waiting_suite() {
   tcase_add_test(tc, live_the_last_word_of_a_recording_stays_true);
   tcase_add_test(tc, a_live_pir_source_never_waits);
   tcase_add_test(tc, without_an_answer_about_liveness_no_frame_waits);
+  tcase_add_test(tc, live_a_single_time_stamp_that_is_far_off_silences_no_sensor);
   tc = tcase_create("not live");
   suite_add_tcase(s, tc);
   tcase_add_test(tc, not_live_a_frame_waits_for_the_readings_of_its_time);
+  tcase_add_test(tc, not_live_a_single_time_stamp_that_is_far_off_is_not_waited_for);
   tcase_add_test(tc, not_live_every_linked_pad_is_waited_for);
   tcase_add_test(tc, readings_gaps_and_the_end_cover_a_frame);
   tcase_add_test(tc, a_gap_ends_before_its_end);

@@ -23,7 +23,7 @@ struct Head {
     const FrameOrder::Step step = order.next({.time = time,
                                               .nominal = .04,
                                               .marked = marked,
-                                              .newest = newest,
+                                              .last = newest,
                                               .now = by_clock ? std::optional(now) : std::nullopt});
     if (step.taken) newest = step.taken;
     return step;
