@@ -138,6 +138,19 @@ START_TEST(a_head_that_only_goes_to_angles_is_sent_the_end_of_each_period) {
 }
 END_TEST
 
+// Its lines are positions, whatever it was commanded: the model knows whether it is to turn.
+START_TEST(a_head_that_only_goes_to_angles_is_to_turn_while_it_follows_a_speed) {
+  Rig rig({}, "ready 1 position feedback");
+  ck_assert(!rig.client.turns(1s));
+  rig.command({1s, {Kind::velocity, radians(10), 0}, {}});
+  rig.run(2s);
+  ck_assert(rig.client.turns(2s));
+  rig.command({2s, {}, {}});
+  rig.run(4s);
+  ck_assert(!rig.client.turns(4s));
+}
+END_TEST
+
 // It stands at 30 degrees; limits of 10 degrees turn it back.
 START_TEST(limits_that_come_in_move_a_head_that_rests_beyond_them) {
   HeadSetup setup;
@@ -312,6 +325,7 @@ int main() {
        a_head_that_rests_is_sent_a_speed_with_the_command,
        an_axis_with_positions_that_holds_does_not_creep_to_where_the_model_rests,
        a_head_that_only_goes_to_angles_is_sent_the_end_of_each_period,
+       a_head_that_only_goes_to_angles_is_to_turn_while_it_follows_a_speed,
        limits_that_come_in_move_a_head_that_rests_beyond_them,
        the_pose_goes_on_from_the_last_report_when_these_cease,
        reports_that_part_from_the_commands_stop_the_head_until_a_new_order,

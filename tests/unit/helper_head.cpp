@@ -33,14 +33,16 @@ using Kind = cerberus::motion::AxisCommand::Kind;
 
 namespace {
 
-// A helper that answers `ready` and writes every line that it reads, and at last `eof`, to a file.
+// A helper that answers `ready` and writes every line that it reads, and at last `eof`, to a file. obeys: what the shell
+// does with each `line` after that.
 class Recorder {
  public:
-  explicit Recorder(const std::string& abilities) {
+  explicit Recorder(const std::string& abilities, const std::string& obeys = "") {
     file_ = "/tmp/cerberus-helper-" + std::to_string(::getpid()) + ".log";
     std::remove(file_.c_str());
     command_ = "sh -c 'read line; echo \"$line\" >>" + file_ + "; echo ready 1 " + abilities +
-               "; while read line; do echo \"$line\" >>" + file_ + "; done; echo eof >>" + file_ + "'";
+               "; while read line; do echo \"$line\" >>" + file_ + "; " + obeys + " done; echo eof >>" +
+               file_ + "'";
   }
   ~Recorder() { std::remove(file_.c_str()); }
   const std::string& command() const { return command_; }
@@ -220,6 +222,51 @@ START_TEST(a_helper_that_ended_is_reported_and_started_again) {
 }
 END_TEST
 
+// It may have left its head turning: another one is started, if only to stop it.
+START_TEST(a_helper_that_ended_just_before_the_end_is_replaced_by_one_that_stops_the_head) {
+  const Recorder helper("velocity", "case $line in *at*) exit 1;; esac;");
+  HelperHead head("external");
+  assert_text(head.open(setup_with(helper.command())), "");
+  assert_text(head.command({0s, {Kind::velocity, radians(5), 0}, {}}), "");
+  Time time = 0s;
+  for (const auto end = Clock::now() + 60s;
+       Clock::now() < end && head.command({time += 1ms, {Kind::velocity, radians(5), 0}, {}}).empty();)
+    std::this_thread::sleep_for(5ms);
+  head.close();
+  const auto lines = helper.until("eof");
+  ck_assert_uint_ge(lines.size(), 5);
+  ck_assert(lines[1].starts_with("move at "));
+  ck_assert(lines[2].starts_with("cerberus-head 1 "));
+  assert_text(lines[3], "stop");
+}
+END_TEST
+
+// Its process stays for a while after it has hung up: commands meanwhile start no other one, and the reason is the same.
+START_TEST(a_helper_that_hung_up_and_has_not_ended_yet_keeps_its_reason) {
+  HelperHead head("external");
+  const std::string command =
+      "sh -c 'read a; echo ready 1 velocity; while read b; do case $b in *at*) exec <&- >&-; sleep 60;; "
+      "esac; "
+      "done'";
+  assert_text(head.open(setup_with(command)), "");
+  assert_text(head.command({0s, {Kind::velocity, radians(5), 0}, {}}), "");
+  std::string reason;
+  Time time = 0s;
+  for (const auto end = Clock::now() + 60s; Clock::now() < end; std::this_thread::sleep_for(1ms)) {
+    const std::string wrong = head.command({time += 1ms, {}, {}});
+    if (!reason.empty() && wrong != reason) break;
+    reason = wrong;
+  }
+  assert_text(reason, "the head's helper `sh` is gone: it ended");
+  for (const auto end = Clock::now() + 60s; Clock::now() < end; std::this_thread::sleep_for(1ms)) {
+    reason = head.command({time += 1ms, {}, {}});
+    if (reason.empty()) break;
+    assert_text(reason, "the head's helper has been started again and is not ready yet");
+  }
+  assert_text(reason, "");
+}
+END_TEST
+
 // The commands' failures until one says that the helper hangs.
 std::string hung(HelperHead& head) {
   Time time = 0s;
@@ -298,6 +345,8 @@ int main() {
        a_head_that_found_its_reference_is_there_and_measured_for_a_moment, a_head_without_a_reference_says_so,
        a_helper_that_cannot_open_its_head_reports_the_reason, an_emergency_stop_between_two_looks_is_seen,
        a_helper_that_ended_is_reported_and_started_again,
+       a_helper_that_ended_just_before_the_end_is_replaced_by_one_that_stops_the_head,
+       a_helper_that_hung_up_and_has_not_ended_yet_keeps_its_reason,
        the_shipped_example_answers_and_is_killed_and_replaced_when_it_hangs,
        a_helper_that_sends_no_more_poses_while_its_head_turns_is_killed_with_what_it_has_started,
        a_helper_sees_the_end_within_half_a_second_of_the_death_of_the_pipeline},

@@ -99,6 +99,26 @@ START_TEST(a_helper_with_feedback_alone_is_judged_by_its_poses_while_its_head_is
 }
 END_TEST
 
+// It may hang just before the head is to stop, and leave it turning.
+START_TEST(a_helper_with_feedback_alone_owes_one_pose_after_its_head_was_to_turn) {
+  Rig rig("ready 1 velocity feedback");
+  rig.look(500ms);
+  rig.turning = false;
+  ck_assert(rig.watch.waits());
+  const Time took = rig.look(10s);
+  assert_text(rig.hung, "it has sent no `pose` for 1 s after its head was to turn");
+  ck_assert(took > 500ms && took <= 600ms);
+  Rig stopped("ready 1 velocity feedback");
+  stopped.look(500ms);
+  stopped.turning = false;
+  stopped.look(50ms);
+  stopped.take("pose 1 2 0 0 0");
+  stopped.look(60s);
+  assert_text(stopped.hung, "");
+  ck_assert(!stopped.watch.waits());
+}
+END_TEST
+
 START_TEST(nothing_is_known_of_a_helper_that_promises_nothing) {
   Rig rig("ready 1 velocity");
   rig.watch.ask();
@@ -125,5 +145,6 @@ int main() {
        a_judge_that_is_late_itself_counts_little_of_the_time,
        other_lines_are_no_answer_of_a_helper_with_alive,
        a_helper_with_feedback_alone_is_judged_by_its_poses_while_its_head_is_to_turn,
+       a_helper_with_feedback_alone_owes_one_pose_after_its_head_was_to_turn,
        nothing_is_known_of_a_helper_that_promises_nothing, a_helper_that_does_not_become_ready_hangs});
 }

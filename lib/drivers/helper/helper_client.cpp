@@ -324,7 +324,7 @@ std::string HelperClient::fault_at_rest() {
 
 bool HelperClient::turns(Time now) {
   if (!ready_ || !fault_.empty() || pressed_) return false;
-  if (follows_) return last_move_.find(" at ") != std::string::npos;
+  if (follows_ && abilities_.velocity) return last_move_.find(" at ") != std::string::npos;
   Pose pose;
   return !last_move_.empty() && model_.state(now, pose).empty() && pose.moving();
 }

@@ -78,7 +78,8 @@ struct HelperHead::Core {
   LineBuffer lines;
   HelperWatch watch;
   bool open = false, ended = false, fails = false;
-  Time epoch{};  // running time 0 on the steady clock
+  bool was_ready = false;  // a helper was: the head may have been turned
+  Time epoch{};            // running time 0 on the steady clock
   Time next_alive{}, started{}, next_start{};
   int wake = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
 
@@ -165,6 +166,7 @@ bool HelperHead::Core::read_lines() {
   lines.append(bytes);
   while (const auto text = lines.take())
     if (const auto line = client.handle(*text, running_time())) watch.take(*line);
+  was_ready = was_ready || client.ready();
   answered.notify_all();
   return alive;
 }
@@ -199,7 +201,7 @@ void HelperHead::Core::run() {
   finish(guard);
 }
 
-// Stops the head and ends the helper. One that hangs just now is replaced by another one, which stops the head.
+// Stops the head and ends the helper. One that hangs or is gone is replaced by another one, which stops the head.
 void HelperHead::Core::finish(std::unique_lock<std::mutex>& guard) {
   const auto settle = [&] {
     while (process.running() && watch.waits()) {
@@ -207,13 +209,12 @@ void HelperHead::Core::finish(std::unique_lock<std::mutex>& guard) {
       check_hung(since_start(Clock::now()));
     }
   };
-  const bool knows = client.ready();
   send("stop\n");
-  if (knows && process.running()) {
+  if (was_ready && process.running()) {
     ask_alive(since_start(Clock::now()));
     settle();
   }
-  if (knows && !process.running()) {
+  if (was_ready && !process.running()) {
     guard.unlock();
     process.finish();
     guard.lock();
@@ -305,7 +306,7 @@ std::string HelperHead::command(const HeadCommand& command) {
   Core& c = *core_;
   if (std::string wrong = c.client.accept(command); !wrong.empty()) return wrong;
   c.epoch = since_start(Clock::now()) - command.time;
-  if (!c.process.running() && since_start(Clock::now()) >= c.next_start) c.start_again();
+  if (!c.process.running() && since_start(Clock::now()) >= c.next_start && c.process.end()) c.start_again();
   std::string wrong = c.client.execute(c.running_time());
   c.poke();
   return wrong;

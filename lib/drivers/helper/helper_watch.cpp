@@ -31,12 +31,13 @@ void HelperWatch::take(const HelperLine& line) {
     asked_ = false;
     waited_ = {};
   } else if (!alive_ && std::get_if<PoseLine>(&line)) {
+    owes_ = false;
     waited_ = {};
   }
 }
 
 std::string HelperWatch::judge(Time now, bool turning) {
-  turning_ = turning;
+  owes_ = owes_ || turning;
   const Time step = std::min(now - std::exchange(last_, now), Time(kMostStep));
   if (!waits()) waited_ = {};
   if (waits()) waited_ += step;
@@ -44,7 +45,8 @@ std::string HelperWatch::judge(Time now, bool turning) {
   if (alive_ && waited_ > parameters_.answer)
     return "it has not answered `alive` for " + span(parameters_.answer);
   if (feedback_ && waited_ > parameters_.feedback)
-    return "it has sent no `pose` for " + span(parameters_.feedback) + " while its head was to turn";
+    return "it has sent no `pose` for " + span(parameters_.feedback) +
+           (turning ? " while its head was to turn" : " after its head was to turn");
   return {};
 }
 

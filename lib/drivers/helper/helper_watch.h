@@ -2,7 +2,8 @@
 // Judges whether a helper process hangs, by what it promises in its `ready` (head_lines.h):
 //
 //   `alive`       each line `alive` is answered within `answer`
-//   `feedback`    without `alive`: `pose` comes at least every `feedback` while the head is commanded to turn
+//   `feedback`    without `alive`: `pose` comes at least every `feedback` while the head is commanded to turn, and once
+//                 within `feedback` after that
 //   neither       nothing is known; only that it reads its input
 //   before ready  `ready` or `fault` comes within `start`
 //
@@ -42,13 +43,13 @@ class HelperWatch {
   // counts as hung; empty: it does not.
   std::string judge(Time now, bool turning);
   // Whether something is awaited that may make it count as hung.
-  bool waits() const { return !ready_ || (alive_ && asked_) || (feedback_ && turning_); }
+  bool waits() const { return !ready_ || (alive_ && asked_) || (feedback_ && owes_); }
 
  private:
   Parameters parameters_;
   bool ready_ = false, alive_ = false, feedback_ = false;
-  bool asked_ = false;    // and not answered since
-  bool turning_ = false;  // at the last judge()
+  bool asked_ = false;  // and not answered since
+  bool owes_ = false;   // no `pose` has come since the head was commanded to turn
   Time last_{}, waited_{};
 };
 
