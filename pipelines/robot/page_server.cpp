@@ -81,11 +81,10 @@ Client PageServer::client(SoupServerMessage* message) const {
                    headers(message, "X-Forwarded-For"), headers(message, "Forwarded"));
 }
 
-// What an unknown proxy on this machine hands on comes from elsewhere.
+// What a proxy hands on counts as from elsewhere, whatever its headers say.
 bool PageServer::is_local(SoupServerMessage* message) const {
   const Client from = client(message);
-  return is_loopback(from.address) &&
-         (!from.proxied || is_in(peer_name(message), house_.settings.page.trusted_proxies));
+  return !from.proxied && is_loopback(from.address);
 }
 
 PageServer::PageServer(House house) : house_(std::move(house)) {}

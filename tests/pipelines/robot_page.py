@@ -218,6 +218,11 @@ def proxied(port, log):
     # A stranger who comes by a proxy on this machine is not at this machine.
     answer = stranger.ask('GET', '/session', headers={'X-Forwarded-For': '203.0.113.5'})[2]
     assert json.loads(answer)['first'] is False
+    # One whom the proxy's headers do not name is not the proxy: the owner on the machine does not wait for such guesses.
+    for header in ({'X-Forwarded-For': '203.0.113.6', 'Forwarded': 'for=127.0.0.1'}, {'Forwarded': 'for=unknown'}):
+        answers = [guess(header) for _ in range(8)]
+        assert answers[-1] == 429, answers
+    assert owner.ask('POST', '/login', {'user': 'owner', 'password': 'long enough'})[0] == 200
 
 
 def devices(program, port, folder):

@@ -69,6 +69,7 @@ START_TEST(every_message_is_read_letter_by_letter) {
                             "set quality nan",
                             "set x 1",
                             "camera ",
+                            "follow 0",
                             "follow 4294967296",
                             "follow -1",
                             "mode",
@@ -170,13 +171,16 @@ START_TEST(a_trusted_proxy_tells_whose_request_it_hands_on_and_nobody_else_does)
       {"fd00::7", "2001:DB8:0:0::1", "", "2001:db8::1"},
       {"127.0.0.1", "", "for=192.0.2.1;proto=https, For=\"[2001:db8::1]:4711\";by=_x", "2001:db8::1"},
       {"127.0.0.1", "", "for=203.0.113.5", "203.0.113.5"},
-      {"127.0.0.1", "", "for=unknown", "127.0.0.1"},
-      {"127.0.0.1", "", "by=\"a,for=1.2.3.4\"", "127.0.0.1"},
-      {"127.0.0.1", "203.0.113.5", "for=192.0.2.1", "127.0.0.1"},  // one is not the proxy's
+      {"127.0.0.1", "", "for=unknown", "unknown via 127.0.0.1"},
+      {"127.0.0.1", "", "by=\"a,for=1.2.3.4\"", "unknown via 127.0.0.1"},
+      {"127.0.0.1", "", "for=127.0.0.1;by=\", for=203.0.113.5", "unknown via 127.0.0.1"},  // not closed
+      {"127.0.0.1", "\"127.0.0.1, 203.0.113.5", "", "203.0.113.5"},
+      {"127.0.0.1", "203.0.113.5", "for=192.0.2.1", "unknown via 127.0.0.1"},  // one is not the proxy's
       {"127.0.0.1", "203.0.113.5", "for=203.0.113.5", "203.0.113.5"},
-      {"127.0.0.1", "203.0.113.5, nonsense", "", "127.0.0.1"},
+      {"127.0.0.1", "203.0.113.5, nonsense", "", "unknown via 127.0.0.1"},
+      {"127.0.0.1", "nonsense, 10.1.2.3", "", "unknown via 10.1.2.3"},
       {"127.0.0.1", "10.0.0.1", "", "10.0.0.1"},  // all of them trusted: the first
-      {"127.0.0.1", ", ,", "", "127.0.0.1"},
+      {"127.0.0.1", ", ,", "", "unknown via 127.0.0.1"},
   };
   for (const auto& one : cases) {
     const Client client = client_of(one.peer, trusted, one.x_forwarded_for, one.forwarded);

@@ -65,13 +65,14 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// Parts between separators outside of quotes.
-std::vector<std::string_view> parts_of(std::string_view text, char separator) {
+enum class Quotes : std::uint8_t { none, hold };  // hold: a separator in quotes parts nothing
+
+std::vector<std::string_view> parts_of(std::string_view text, char separator, Quotes quotes) {
   std::vector<std::string_view> parts;
   bool quoted = false;
   std::size_t begin = 0;
   for (std::size_t at = 0; at <= text.size(); ++at) {
-    if (at < text.size() && text[at] == '"') quoted = !quoted;
+    if (at < text.size() && text[at] == '"') quoted = quotes == Quotes::hold && !quoted;
     if (at < text.size() && (quoted || text[at] != separator)) continue;
     parts.push_back(trimmed(text.substr(begin, at - begin)));
     begin = at + 1;
@@ -92,7 +93,7 @@ std::string node_address(std::string_view node) {
 
 // The node of "for=1.2.3.4;proto=https" (RFC 7239, 4).
 std::string_view for_of(std::string_view element) {
-  for (const std::string_view pair : parts_of(element, ';')) {
+  for (const std::string_view pair : parts_of(element, ';', Quotes::hold)) {
     const std::size_t sign = pair.find('=');
     const std::string_view key = pair.substr(0, sign);
     const bool is_for =
@@ -102,13 +103,21 @@ std::string_view for_of(std::string_view element) {
   return {};
 }
 
-// The right-most address of a header that is not trusted; where none is known, what handed it on.
+// Requests of clients that are not known: those that this proxy hands on are counted as one, and not as its own.
+std::string unknown_via(std::string_view peer) {
+  return "unknown via " + std::string(peer);
+}
+
+// The right-most address of a header that is not trusted. Quotes have no meaning in X-Forwarded-For, where a stranger may
+// write one to hide what the proxy adds; in Forwarded one that is not closed does so, and the header counts for nothing.
 std::string right_most(std::string_view header, bool is_forwarded, std::string peer,
                        std::span<const std::string> trusted) {
-  const std::vector<std::string_view> elements = parts_of(header, ',');
+  if (is_forwarded && std::ranges::count(header, '"') % 2 != 0) return unknown_via(peer);
+  const std::vector<std::string_view> elements =
+      parts_of(header, ',', is_forwarded ? Quotes::hold : Quotes::none);
   for (auto one = elements.rbegin(); one != elements.rend(); ++one) {
     std::string address = node_address(is_forwarded ? for_of(*one) : *one);
-    if (address.empty()) return peer;  // "unknown", or a name of the proxy's own
+    if (address.empty()) return unknown_via(peer);  // "unknown", or a name of the proxy's own
     peer = std::move(address);
     if (!is_in(peer, trusted)) return peer;
   }
@@ -152,6 +161,8 @@ Client client_of(std::string_view peer, std::span<const std::string> trusted,
     client.address = by_x;
   else if (x_forwarded_for.empty())
     client.address = by_standard;
+  else
+    client.address = unknown_via(own);
   return client;
 }
 

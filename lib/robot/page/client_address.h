@@ -16,14 +16,14 @@ bool is_network(std::string_view text);
 std::string plain_address(std::string_view address);
 
 struct Client {
-  std::string address;
+  std::string address;   // or "unknown via 127.0.0.1", where a trusted proxy names none
   bool proxied = false;  // a proxy has handed the request on, trusted or not
 };
 
 // Of a request that comes from `peer`, with its headers X-Forwarded-For and Forwarded (RFC 7239), several of a name joined
 // by commas. They count where the peer is in one of the networks `trusted`: then the client is the right-most address that
 // is in none of them, as every address left of it is what a stranger may have written. Where both headers are there and
-// name different clients, one of them is not the proxy's, and the client is the peer.
+// name different clients, one of them is not the proxy's, and the client is unknown, as it is where they name none.
 Client client_of(std::string_view peer, std::span<const std::string> trusted,
                  std::string_view x_forwarded_for, std::string_view forwarded);
 bool is_in(std::string_view address, std::span<const std::string> networks);

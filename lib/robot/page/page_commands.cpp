@@ -62,7 +62,7 @@ std::optional<PageCommand> parse_command(std::string_view line) {
     good = read_share(words[1], command.pan) && read_share(words[2], command.tilt);
   } else if (is("follow", 1)) {
     command.kind = Kind::follow;
-    good = read(words[1], command.number) && command.number <= 0xffffffff;
+    good = read(words[1], command.number) && command.number >= 1 && command.number <= 0xffffffff;
   } else if (is("drive", 2)) {
     command.kind = Kind::drive;
     good = read_share(words[1], command.pan) && read_share(words[2], command.tilt);
