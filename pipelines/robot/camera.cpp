@@ -87,6 +87,10 @@ void Camera::start() {
   set_show(true);
   if (parts_.recorder) recording_fault_.clear();  // its recorder reports its own
   published_recording_.clear();
+  if (kept_stopped_ && head_ != nullptr) {  // before the first frame, with which it would follow by itself
+    gst_element_set_state(pipeline_, GST_STATE_PAUSED);
+    emit("stop");
+  }
   // What refuses to start posts an error on the bus.
   gst_element_set_state(pipeline_, GST_STATE_PLAYING);
   publish_event();
@@ -144,6 +148,9 @@ void Camera::on_report(const GstStructure* report) {
   if (gst_structure_has_name(report, "cerberus-command")) {
     const gchar* order = gst_structure_get_string(report, "name");
     if (g_strcmp0(order, "picture") == 0) publish_picture();
+    gboolean done = FALSE;
+    gst_structure_get_boolean(report, "done", &done);
+    if (order != nullptr) note_order(order, done);
     if (order != nullptr && on_order_) on_order_(order);
     return;
   }
@@ -237,7 +244,7 @@ void Camera::set_mode(Mode mode) {
     wanted_ = again_ = false;
     record_ = false;
     set_show(false);
-    if (state_ == State::running && order("home")) {
+    if (state_ == State::running && emit("home")) {
       state_ = State::parking;
       since_ = Clock::now();
     } else if (state_ == State::running) {
@@ -252,12 +259,12 @@ void Camera::set_mode(Mode mode) {
     start();
   } else if (state_ == State::parking) {  // privacy ended while the head was on its way
     if (std::exchange(stale_, false)) {
-      order("stop");
+      emit("stop");
       again_ = true;
       close();
       return;
     }
-    order("auto");
+    emit(kept_stopped_ ? "stop" : "auto");
     record_ = true;
     set_show(true);
     state_ = State::running;
@@ -282,7 +289,7 @@ bool Camera::is_stopped() const {
 }
 
 void Camera::end() {
-  if (head_ != nullptr) order("stop");
+  emit("stop");
   state_ = State::ending;
   since_ = Clock::now();
   set_show(false);

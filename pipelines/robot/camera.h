@@ -12,6 +12,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "robot/backoff.h"
 #include "robot/pipeline_text.h"
@@ -91,7 +92,8 @@ class Camera {
   bool is_recording() const { return recording_ && recording_fault_.empty(); }
   // The head stands because of an order to stop, or of its emergency stop.
   bool is_stopped_by_hand() const {
-    return head_state_ == "stopped" || (head_state_ == "manual" && head_reason_.ends_with(": stop"));
+    return kept_stopped_ || head_state_ == "stopped" ||
+           (head_state_ == "manual" && head_reason_.ends_with(": stop"));
   }
 
   void set_on_publish(OnPublish on_publish) { on_publish_ = std::move(on_publish); }
@@ -154,6 +156,8 @@ class Camera {
   std::string part_of(GstObject* source) const;
   void on_message(GstMessage* message);
   void on_report(const GstStructure* report);
+  bool emit(const char* signal);  // of the head; false: there is none, or it refuses
+  void note_order(std::string_view order, bool done);
 
   CameraSettings settings_;
   SharedSettings shared_;
@@ -165,6 +169,8 @@ class Camera {
   Mode mode_ = Mode::privacy;
   State state_ = State::off;
   bool wanted_ = false, again_ = false, final_ = false;
+  bool kept_stopped_ =
+      false;            // the last order was to stop: the head stands, also when its pipeline starts anew
   bool stale_ = false;  // the settings changed while the head parks: the pipeline is not of these
   Clock::time_point since_{}, last_frame_{}, last_tick_{};
   Parts parts_;

@@ -97,7 +97,7 @@ Camera::Change Camera::change(const CameraSettings& settings, SharedSettings sha
   parts_ = {};
   camera_backoff_ = head_backoff_ = recorder_backoff_ = {};
   if (state_ == State::running) {
-    if (head_ != nullptr) order("stop");
+    emit("stop");
     again_ = true;
     close();
   } else if (state_ == State::waiting) {
@@ -144,10 +144,25 @@ bool Camera::turn(double pan_speed, double tilt_speed) {
   gboolean done = FALSE;
   if (head_ != nullptr && state_ == State::running)
     g_signal_emit_by_name(head_, "turn", pan_speed, tilt_speed, &done);
+  if (done && (pan_speed != 0 || tilt_speed != 0)) kept_stopped_ = false;
   return done;
 }
 
 bool Camera::order(const char* signal) {
+  const bool done = emit(signal);
+  note_order(signal, done);
+  return done;
+}
+
+// A head that is not there now is kept stopped when it comes; only an order that moves it ends that.
+void Camera::note_order(std::string_view order, bool done) {
+  if (order == "stop")
+    kept_stopped_ = done || settings_.head;
+  else if (done && (order == "auto" || order == "home" || order == "follow" || order.starts_with("move-")))
+    kept_stopped_ = false;
+}
+
+bool Camera::emit(const char* signal) {
   gboolean done = FALSE;
   if (head_ != nullptr) g_signal_emit_by_name(head_, signal, &done);
   return done;
@@ -156,6 +171,7 @@ bool Camera::order(const char* signal) {
 bool Camera::follow(guint track) {
   gboolean done = FALSE;
   if (head_ != nullptr && state_ == State::running) g_signal_emit_by_name(head_, "follow", track, &done);
+  if (done) kept_stopped_ = false;
   return done;
 }
 

@@ -438,6 +438,26 @@ def reload_while_parking(owner, process, folder):
 
 def base(owner, operator, folder):
     """A drive that is not repeated ends by itself; STOP ends one at once, also another's until that lets go, and so does
+def stop_outlasts_a_restart(owner, process, folder):
+    """A head that was stopped by hand stands, too, when the camera's pipeline starts anew, until it is given back."""
+    log, file, line = folder / 'log', folder / 'robot.toml', Socket(owner)
+    camera = lambda test: reports(line, lambda m: isinstance(m, dict) and 'cameras' in m and test(m['cameras'][0]))['cameras'][0]
+    line.send('stop')
+    camera(lambda one: one['stopped'] and one['head'] == 'manual')
+    count = log.read_text().count('front: changed, its pipeline starts anew')
+    file.write_text(file.read_text().replace('framerate = 11', 'framerate = 12'))
+    process.send_signal(signal.SIGHUP)
+    wait_until('the other settings', lambda: log.read_text().count('front: changed, its pipeline starts anew') > count)
+    before = reports(line, lambda m: isinstance(m, tuple) and m[1])[1]['frame']
+    reports(line, lambda m: isinstance(m, tuple) and m[1] and m[1]['frame'] != before)
+    for _ in range(3):
+        one = camera(lambda one: one['state'] == 'running' and one['rate'] > 0)
+        assert one['stopped'] and one['head'] == 'manual', one
+    line.send('auto')
+    camera(lambda one: not one['stopped'] and one['head'] != 'manual')
+    line.close()
+
+
     the end of the page. Orders are repeated: a program of the base that gets no processor time is started anew."""
     drive = folder / 'drive'
     line = Socket(operator)
@@ -602,6 +622,7 @@ def main():
                 reload_while_parking(owner, process, folder)
                 many_sockets(viewer)
                 base(owner, operator, folder)
+                stop_outlasts_a_restart(owner, process, folder)
                 stages(owner)
                 assert operator.ask('GET', '/log')[0] == 403 and viewer.ask('POST', '/picture', {'camera': 'x'})[0] == 404
                 recordings(owner, operator, viewer, folder)
