@@ -2,6 +2,7 @@
 // How a browser gets and loses its session: passwords are checked in a thread of their own.
 #include <gio/gio.h>
 
+#include <string_view>
 #include <utility>
 
 #include "device_tokens.h"
@@ -10,6 +11,8 @@
 namespace cerberus::robot {
 
 namespace {
+
+constexpr std::string_view kDeviceAccount = "device";  // no role is called so
 
 AccessTime now() {
   return std::chrono::steady_clock::now();
@@ -26,16 +29,20 @@ void PageServer::set_cookie(SoupServerMessage* message, const char* name, const 
                               cookie.c_str());
 }
 
+// Whether the address must wait before it tries the account again; the answer says so then.
+bool PageServer::must_wait(Request& request, std::string_view account) const {
+  const std::chrono::seconds wait = limit_.wait(request.address, account, now());
+  if (wait.count() == 0) return false;
+  soup_message_headers_replace(soup_server_message_get_response_headers(request.message), "Retry-After",
+                               std::to_string(wait.count()).c_str());
+  request.refuse(429, "too many wrong passwords: wait " + std::to_string(wait.count()) + " s");
+  return true;
+}
+
 void PageServer::log_in(Request& request) {
   if (const std::string token = request.value("device"); !token.empty()) return log_in_device(request, token);
   const Role role = role_of(request.value("user")).value_or(Role::none);
-  const std::chrono::seconds wait = limit_.wait(request.address, name(role), now());
-  if (wait.count() > 0) {
-    soup_message_headers_replace(soup_server_message_get_response_headers(request.message), "Retry-After",
-                                 std::to_string(wait.count()).c_str());
-    request.refuse(429, "too many wrong passwords: wait " + std::to_string(wait.count()) + " s");
-    return;
-  }
+  if (must_wait(request, name(role))) return;
   // Counts as wrong until it is found right: several at once are no way around the limit.
   limit_.failed(request.address, name(role), now());
   const std::string password = request.value("password");
@@ -60,8 +67,10 @@ const Device* PageServer::device_of(const std::string& token) {
   return devices_.find(hash_of_token(token));
 }
 
-// Its token has so many random bits that no number of guesses finds one.
+// Its token has so many random bits that no number of guesses finds one; each reads the file, and is written to the log.
 void PageServer::log_in_device(Request& request, const std::string& token) {
+  if (must_wait(request, kDeviceAccount)) return;
+  limit_.failed(request.address, kDeviceAccount, now());
   const Device* device = device_of(token);
   if (device == nullptr) {
     log_access(request.address, "gave the token of no device");
@@ -70,6 +79,7 @@ void PageServer::log_in_device(Request& request, const std::string& token) {
                    "cerberusd --make-device-token");
     return;
   }
+  limit_.withdraw(request.address, kDeviceAccount);
   if (request.session != nullptr) sessions_.end(request.session->token);
   begin_device_session(request, *device, token);
   if (request.session == nullptr)

@@ -51,6 +51,7 @@ class PageServer {
   void answer(Request& request);
   void answer_page(Request& request);
   void answer_session(Request& request);
+  bool must_wait(Request& request, std::string_view account) const;
   void log_in(Request& request);
   void log_in_device(Request& request, const std::string& token);
   const Device* device_of(const std::string& token);  // as the file has it now

@@ -252,6 +252,8 @@ def devices(program, port, folder):
         pass
     assert json.loads(screen.ask('GET', '/session')[2])['role'] is None
     assert screen.ask('POST', '/login', {'device': token})[0] == 403
+    answers = [screen.ask('POST', '/login', {'device': 'a guess'})[0] for _ in range(10)]
+    assert 429 in answers, answers
 
 
 def first_password(page, one_time):
@@ -436,8 +438,6 @@ def reload_while_parking(owner, process, folder):
     line.close()
 
 
-def base(owner, operator, folder):
-    """A drive that is not repeated ends by itself; STOP ends one at once, also another's until that lets go, and so does
 def stop_outlasts_a_restart(owner, process, folder):
     """A head that was stopped by hand stands, too, when the camera's pipeline starts anew, until it is given back."""
     log, file, line = folder / 'log', folder / 'robot.toml', Socket(owner)
@@ -458,6 +458,8 @@ def stop_outlasts_a_restart(owner, process, folder):
     line.close()
 
 
+def base(owner, operator, folder):
+    """A drive that is not repeated ends by itself; STOP ends one at once, also another's until that lets go, and so does
     the end of the page. Orders are repeated: a program of the base that gets no processor time is started anew."""
     drive = folder / 'drive'
     line = Socket(operator)
@@ -620,9 +622,9 @@ def main():
                 pictures(owner)
                 steering(owner, operator, viewer, stream)
                 reload_while_parking(owner, process, folder)
+                stop_outlasts_a_restart(owner, process, folder)
                 many_sockets(viewer)
                 base(owner, operator, folder)
-                stop_outlasts_a_restart(owner, process, folder)
                 stages(owner)
                 assert operator.ask('GET', '/log')[0] == 403 and viewer.ask('POST', '/picture', {'camera': 'x'})[0] == 404
                 recordings(owner, operator, viewer, folder)
