@@ -27,7 +27,8 @@ int fail(const std::string& text) {
   return 1;
 }
 
-// The file belongs to the folder's owner, as whom the robot runs: an administrator may call this as root.
+// The file belongs to the folder's owner, as whom the robot runs: an administrator may call this as root. That owner may put
+// a link in the place of the file, and is given no other file by it.
 bool save(const std::string& folder, const Devices& devices, std::string& error) {
   if (g_mkdir_with_parents(folder.c_str(), 0700) != 0) {
     error = folder + " cannot be made: " + g_strerror(errno);
@@ -44,7 +45,7 @@ bool save(const std::string& folder, const Devices& devices, std::string& error)
   }
   GStatBuf about{};
   if (::geteuid() == 0 && g_stat(folder.c_str(), &about) == 0 &&
-      ::chown(path.c_str(), about.st_uid, about.st_gid) != 0) {
+      ::lchown(path.c_str(), about.st_uid, about.st_gid) != 0) {
     error = path + " cannot be given to the folder's owner: " + g_strerror(errno);
     return false;
   }
