@@ -9,7 +9,9 @@ namespace cerberus::robot {
 
 namespace {
 
-constexpr GstClockTime kLongestTrial = 20 * GST_SECOND;  // as in pipelines/encoder
+// The main loop waits for it when the configuration is read again, and the service's watchdog bites after 30 s. Several
+// times what a device takes to begin.
+constexpr GstClockTime kLongestTrial = 3 * GST_SECOND;
 
 // A driver may be there without its device.
 bool works(const publish::Encoder& encoder) {

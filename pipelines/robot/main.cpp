@@ -8,8 +8,8 @@
 
 #if HAVE_PAGE
 #include "device_tokens.h"
-#include "encoder_choice.h"
 #endif
+#include "encoder_choice.h"
 #include "robot.h"
 #include "robot/settings_file.h"
 #include "settings_trial.h"
