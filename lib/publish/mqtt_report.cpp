@@ -155,8 +155,9 @@ void MqttReport::head(std::vector<MqttMessage>& out) {
 
 std::vector<MqttMessage> MqttReport::update(const MqttFrame& frame) {
   std::vector<MqttMessage> out;
-  distance_ = arrival_ ? frame.arrival - *arrival_ : std::chrono::nanoseconds::zero();
+  if (arrival_) distance_ = std::min(frame.arrival - *arrival_, parameters_.longest_distance);
   arrival_ = frame.arrival;
+  silent_ = false;
   if (frame.analysed) {
     tracks(frame, out);
     state(out);
@@ -196,8 +197,14 @@ void MqttReport::pir(std::span<const std::uint8_t> readings, std::vector<MqttMes
 }
 
 // What was published of the last frame is true no more, and stays at the broker.
-
 std::vector<MqttMessage> MqttReport::end() {
+  std::vector<MqttMessage> out = fall_silent();
+  arrival_.reset();
+  distance_ = std::chrono::nanoseconds::zero();
+  return out;
+}
+
+std::vector<MqttMessage> MqttReport::fall_silent() {
   std::vector<MqttMessage> out;
   for (const auto& [id, visit] : std::exchange(visits_, {}))
     out.push_back({topic("track"), track_text("left", std::nullopt, visit.object), false});
@@ -214,13 +221,14 @@ std::vector<MqttMessage> MqttReport::end() {
     line.close('}');
     once("rule", text_of(line), out);
   }
-  arrival_.reset();
   return out;
 }
 
+// The distance of a stream's frames outlasts its silence: that of a slow camera is known when its next frame comes.
 std::vector<MqttMessage> MqttReport::check(std::chrono::nanoseconds now) {
-  if (!arrival_ || now - *arrival_ < parameters_.left + 2 * distance_) return {};
-  return end();
+  if (!arrival_ || silent_ || now - *arrival_ < parameters_.left + 2 * distance_) return {};
+  silent_ = true;
+  return fall_silent();
 }
 
 std::vector<MqttMessage> MqttReport::discovery(std::string_view home_assistant,

@@ -69,6 +69,9 @@ class MqttReport {
     std::chrono::nanoseconds left = std::chrono::seconds(2);    // unseen for so long, a track has left
     std::chrono::nanoseconds head =
         std::chrono::milliseconds(500);  // between two reports of a head that moves
+    // Frames that are further apart are those of a camera that was away. Chosen: several times the distance of the
+    // slowest cameras.
+    std::chrono::nanoseconds longest_distance = std::chrono::seconds(10);
   };
 
   // `prefix`: "cerberus"; `camera`: one level of a topic.
@@ -101,6 +104,7 @@ class MqttReport {
   };
   void tracks(const MqttFrame& frame, std::vector<MqttMessage>& out);
   void state(std::vector<MqttMessage>& out);
+  std::vector<MqttMessage> fall_silent();
   void head(std::vector<MqttMessage>& out);
   void pir(std::span<const std::uint8_t> readings, std::vector<MqttMessage>& out);
   void once(std::string_view name, std::string payload, std::vector<MqttMessage>& out);
@@ -113,9 +117,10 @@ class MqttReport {
   std::optional<MqttFrame::Head> head_;
   std::chrono::nanoseconds head_reported_{};
   std::size_t sensors_ = 0;  // of the last frame
-  // Of the last frame, and to the one before; nullopt: none came since the stream began or was found silent.
-  std::optional<std::chrono::nanoseconds> arrival_;
-  std::chrono::nanoseconds distance_{};
+  std::optional<std::chrono::nanoseconds>
+      arrival_;                          // of the last frame; nullopt: none came since the stream began
+  std::chrono::nanoseconds distance_{};  // to the one before
+  bool silent_ = false;                  // found by check() since the last frame
 };
 
 // An order that arrived at PREFIX/CAMERA/command/NAME.

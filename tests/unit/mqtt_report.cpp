@@ -150,6 +150,36 @@ START_TEST(nothing_moves_any_more_when_the_stream_ends_or_no_frame_comes) {
 }
 END_TEST
 
+START_TEST(motion_lasts_from_frame_to_frame_of_a_slow_camera) {
+  const std::vector<MqttObject> one{walker(4)};
+  MqttReport report("cerberus", "front");
+  int states = 0;
+  for (int second = 0; second <= 30; ++second) {
+    MqttFrame slow = frame(seconds(second), one);
+    slow.arrival = seconds(second);
+    const auto out = second % 3 == 0 ? report.update(slow) : report.check(seconds(second));
+    // The distance is known from the second frame on.
+    if (second > 3) states += find(out, "cerberus/front/state") != nullptr;
+  }
+  ck_assert_int_eq(states, 0);
+  ck_assert(report.check(seconds(37)).empty());
+  ck_assert(tracks(report.check(seconds(38))) == Words{"left 4"});
+  // A long silence is no distance of frames.
+  const auto back = [&](int second) {
+    MqttFrame again = frame(seconds(second), one);
+    again.arrival = seconds(second);
+    report.update(again);
+  };
+  back(4000);
+  ck_assert(report.check(seconds(4021)).empty());
+  ck_assert(tracks(report.check(seconds(4022))) == Words{"left 4"});
+  back(4100);
+  back(4101);
+  ck_assert(report.check(seconds(4104)).empty());
+  ck_assert(tracks(report.check(seconds(4105))) == Words{"left 4"});
+}
+END_TEST
+
 START_TEST(a_stream_without_a_detector_ends_without_a_word_about_motion) {
   MqttReport report("cerberus", "front");
   report.update({});
@@ -379,6 +409,7 @@ int main() {
        states_are_retained_and_published_when_they_change,
        a_frame_that_no_detector_saw_says_nothing_about_motion,
        nothing_moves_any_more_when_the_stream_ends_or_no_frame_comes,
+       motion_lasts_from_frame_to_frame_of_a_slow_camera,
        a_stream_without_a_detector_ends_without_a_word_about_motion,
        every_retained_topic_of_a_camera_is_known, a_moving_head_is_reported_twice_a_second_and_when_it_rests,
        home_assistant_finds_each_sensor_once_and_where_it_is_published,
