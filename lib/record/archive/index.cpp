@@ -67,7 +67,8 @@ std::string uri_of(const std::string& path) {
 }
 
 // "track 7": the numbers of tracks are many.
-constexpr char kReason[] = "rtrim(rtrim(reason, '0123456789'), ' ')";
+constexpr char kReason[] =
+    "CASE WHEN reason GLOB 'track [0-9]*' THEN rtrim(rtrim(reason, '0123456789'), ' ') ELSE reason END";
 constexpr char kSelect[] = "SELECT ", kFrom[] = ", id, keep FROM recordings";
 constexpr char kColumns[] =
     "file, lines, picture, camera, event, part, begin, end, reason, tracks, kinds, rule, size, open, people, "
