@@ -6,8 +6,8 @@
 namespace cerberus::fusion {
 namespace {
 
-// Tracks that are older than this decide nothing between two frames.
 constexpr std::string_view kChosen = "chosen";
+// Tracks that are older than this decide nothing between two frames.
 constexpr Time kBetween = std::chrono::seconds(1);
 
 }  // namespace
@@ -26,7 +26,7 @@ void Decisions::configure(const FuserOptions& options, const RuleTable& table) {
 void Decisions::choose(std::uint32_t track) {
   const std::lock_guard guard(lock_);
   choice_.choose(track);
-  if (track == 0) chosen_ = TargetOverride::Answer::none;
+  chosen_ = TargetOverride::Answer::none;  // the last frame says nothing of this track
 }
 
 // While the chosen track is awaited a sensor's turn goes on: it may lead to it.

@@ -136,6 +136,11 @@ START_TEST(the_chosen_track_is_the_decision_from_the_next_frame_on_until_it_is_g
   ck_assert(lost.target == 4 && lost.rule_name == "camera" && lost.changed);
   stream.decisions.choose(9);
   ck_assert(frame(7s, 2).target == 9);
+  stream.decisions.choose(31);  // the last frame, which had 9, says nothing of it
+  const auto between_choices = stream.between(7010ms, 1);
+  ck_assert(between_choices && between_choices->decision.target != 31);
+  stream.decisions.choose(9);
+  ck_assert(frame(7020ms, 2).target == 9);
   stream.decisions.choose(0);
   ck_assert(frame(7040ms, 2).rule_name == "camera");
   stream.decisions.choose(31);  // a track that is gone
