@@ -136,7 +136,7 @@ class Visit:
         self.driver.execute_script("document.getElementById('scroller').scrollTop = 0")
 
 
-def owner_visits(driver, port, one_time, folder, robot):
+def owner_visits(driver, port, one_time, folder, robot, process):
     page = Visit(driver, port)
     page.wait('the entrance', lambda: page.one('password').is_displayed())
     assert not [one.text for one in driver.find_elements(By.TAG_NAME, 'button') if one.is_displayed() and one.text == 'STOP']
@@ -159,6 +159,7 @@ def owner_visits(driver, port, one_time, folder, robot):
     page.wait('automatic', lambda: 'manual' not in page.status() and not page.one('stopped').is_displayed())
     values_in_force(driver, page)
     lost_connection(driver, page)
+    silent_robot(driver, page, process)
     two_cameras(driver, page, folder)
     drives_by_keys(driver, page, robot / 'drive')
     follows_by_tap(driver, page)
@@ -204,6 +205,19 @@ def lost_connection(driver, page):
         socket.close()""")
     assert enabled == [], enabled
     page.wait('connected again', lambda: page.one('stop').is_enabled() and page.has_picture())
+
+
+def silent_robot(driver, page, process):
+    """A robot that says no farewell is noticed: nothing can be pressed that would not arrive."""
+    assert not severe(driver)
+    process.send_signal(signal.SIGSTOP)
+    try:
+        page.wait('STOP cannot be pressed', lambda: not page.one('stop').is_enabled())
+        assert 'lost' in page.one('veil').text and not page.has_picture()
+    finally:
+        process.send_signal(signal.SIGCONT)
+    page.wait('connected again', lambda: page.one('stop').is_enabled() and page.has_picture())
+    driver.get_log('browser')  # attempts to connect that failed
 
 
 def two_cameras(driver, page, folder):
@@ -506,7 +520,7 @@ file = "no-video.avi"
                     one_time = re.search(r'One-time password .*: ([0-9a-f]{16})\n', (folder / 'log').read_text())
                     time.sleep(.05)
                 assert one_time, 'cerberusd printed no one-time password'
-                owner_visits(driver, port, one_time[1], pictures, folder)
+                owner_visits(driver, port, one_time[1], pictures, folder, process)
                 viewer_visits(driver, port)
                 guesses(driver, port)
                 errors = severe(driver)

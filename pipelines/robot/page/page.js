@@ -5,7 +5,7 @@
 const at = (id) => document.getElementById(id);
 const kRepeat = 150;  // ms between repetitions of a move, which ends 500 ms after the last one
 let socket = null, hello = null, state = null, facts = null, cameraName = '';
-let gone = false, shown = '';  // `shown`: the camera of which the socket's pictures are
+let gone = false, silent = 0, shown = '';  // `shown`: the camera of which the socket's pictures are
 
 // ---- log-in
 
@@ -76,29 +76,43 @@ function connect() {
   socket = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/socket`);
   socket.binaryType = 'arraybuffer';
   shown = '';
+  silent = 0;
   socket.onopen = () => enableButtons();
   socket.onmessage = (event) => {
+    if (event.target !== socket) return;
+    silent = 0;
     if (typeof event.data === 'string') onReport(JSON.parse(event.data));
     else onPicture(event.data, event.target);
   };
-  socket.onclose = async () => {
-    socket = null;
-    letGo();
-    enableButtons();
-    if (gone) return;
-    forgetPicture();
-    veil('The connection is lost. It is tried again.');
-    setTimeout(async () => {
-      try {
-        const session = await (await fetch('/session')).json();
-        if (session.role) connect();
-        else location.reload();
-      } catch {
-        socket || setTimeout(() => socket || connect(), 2000);
-      }
-    }, 1000);
-  };
+  socket.onclose = (event) => event.target === socket && lose();
 }
+
+// Said at once: a socket whose robot is out of reach takes its time to close.
+function lose() {
+  const lost = socket;
+  socket = null;
+  lost.close();
+  letGo();
+  enableButtons();
+  if (gone) return;
+  forgetPicture();
+  veil('The connection is lost. It is tried again.');
+  setTimeout(async () => {
+    try {
+      const session = await (await fetch('/session', {signal: AbortSignal.timeout(kSilence)})).json();
+      if (session.role) socket || connect();
+      else location.reload();
+    } catch {
+      socket || setTimeout(() => socket || connect(), 2000);
+    }
+  }, 1000);
+}
+
+// A robot that is switched off, or whose network is gone, says no farewell. It reports every second.
+const kSilence = 3000;  // ms
+// Counted in looks, not by a clock: a page that is busy itself finds its messages before it has looked so often.
+const kLook = 500;  // ms
+setInterval(() => socket && ++silent * kLook > kSilence && lose(), kLook);
 
 let wordTimer = 0;
 function say(word, good = false) {
@@ -131,11 +145,12 @@ function onReport(report) {
   if (report.done === 'stopped') say('Stopped.', true);
   if (report.refused) {
     say(report.refused);
+    choice = null;
     letGo();
   }
   if (report.hello) {
     hello = report.hello;
-    const wanted = cameraName || decodeURIComponent(location.hash.slice(1));
+    const wanted = cameraName || named();
     at('camera').replaceChildren(...hello.cameras.map((camera) => new Option(camera.name)));
     at('camera').hidden = hello.cameras.length < 2;
     at('base').hidden = !hello.base;
@@ -152,9 +167,19 @@ function onReport(report) {
   }
 }
 
+// By the address; what is no encoding of a name names none.
+function named() {
+  try {
+    return decodeURIComponent(location.hash.slice(1));
+  } catch {
+    return '';
+  }
+}
+
 function choose(name) {
   if (cameraName !== name) {
     cameraName = name;
+    choice = null;
     forgetPicture();
     veil('The picture is on its way.');
   }
@@ -170,7 +195,7 @@ function choose(name) {
 at('camera').addEventListener('change', () => choose(at('camera').value));
 window.addEventListener('hashchange', async () => {
   if (location.hash.startsWith('#device=')) return location.reload();
-  const name = decodeURIComponent(location.hash.slice(1));
+  const name = named();
   if (hello && name !== cameraName && hello.cameras.some((camera) => camera.name === name)) choose(name);
 });
 
@@ -222,7 +247,9 @@ function showState() {
   const rows = [['Camera', `${camera.state}, ${camera.rate} frames/s`]];
   if (camera.state === 'running' && camera.latency > 0) rows.push(['Latency', `${camera.latency.toFixed(0)} ms until it is analysed`]);
   if (document.activeElement !== at('stage')) at('stage').value = camera.stage;
-  if (camera.fault) rows.push(['Fault', camera.fault]);
+  if (camera.fault && camera.fault !== camera['recording-fault']) rows.push(['Fault', camera.fault]);
+  for (const one of state.cameras)
+    if (one['recording-fault']) rows.push(['Recording', `${one.name}: ${one['recording-fault']}`]);
   if (about().head) rows.push(['Head', camera.stopped ? 'stopped' : camera.head || '\u2013']);
   if (facts && facts.pose) rows.push(['Looks at', `${facts.pose.pan.toFixed(1)}\u00b0, ${facts.pose.tilt.toFixed(1)}\u00b0`]);
   if (facts && facts.fusion) {
