@@ -22,7 +22,9 @@
  *
  * ## Example launch lines
  * |[
- * gst-launch-1.0 videotestsrc num-buffers=60 pattern=ball ! x264enc tune=zerolatency ! rtph264pay ! \
+ * gst-launch-1.0 videotestsrc num-buffers=60 pattern=ball ! \
+ *     videoconvertscale ! video/x-raw,format=I420,width=[2,8192,2],height=[2,8192,2] ! \
+ *     x264enc tune=zerolatency ! rtph264pay ! \
  *     rtph264depay request-keyframe=true ! streamdamage ! avdec_h264 ! motiondetect ! fakesink
  * ]|
  *

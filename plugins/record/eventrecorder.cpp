@@ -80,10 +80,12 @@
  * |[
  * gst-launch-1.0 eventrecorder name=recorder location=. \
  *     videotestsrc num-buffers=60 pattern=ball ! motiondetect ! tee name=t \
- *     t. ! queue ! videoconvert ! x264enc tune=zerolatency key-int-max=25 ! h264parse ! recorder.video \
+ *     t. ! queue ! videoconvertscale ! video/x-raw,format=I420,width=[2,8192,2],height=[2,8192,2] ! \
+ *     x264enc tune=zerolatency key-int-max=25 ! h264parse ! recorder.video \
  *     t. ! queue ! recorder.analysis
- * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! videoconvert ! motiondetect ! x264enc tune=zerolatency ! \
- *     h264parse ! eventrecorder location=. pre-roll=2000000000
+ * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! videoconvert ! motiondetect ! \
+ *     videoconvertscale ! video/x-raw,format=I420,width=[2,8192,2],height=[2,8192,2] ! \
+ *     x264enc tune=zerolatency ! h264parse ! eventrecorder location=. pre-roll=2000000000
  * ]|
  *
  * Since: 0.1

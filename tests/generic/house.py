@@ -209,6 +209,16 @@ def check_launch_file(path):
             complain(path, 'is run by no test')
 
 
+# The text of a launch file, a source or a page in one line each, without comments' stars, quotes and line ends; pages are
+# parted by their fences, so that no line runs into the next example.
+def launch_lines(path):
+    text = path.read_text('utf-8', errors='replace')
+    if path.suffix == '.launch':
+        text = '\n'.join(line for line in text.splitlines() if not line.startswith('#'))
+    parts = text.split('```') if path.suffix == '.md' else [text]
+    return [re.sub(r'[\'"\\\s]+(?:\*\s+)?', ' ', part) for part in parts]
+
+
 # Parameter sets between the slices of a picture damage it for FFmpeg: payloaders.cpp says which interval puts them before.
 def check_payloaders(path):
     if path.suffix in SOURCES | {'.md'} and path != TOP / 'tests' / 'generic' / 'house.py':
@@ -216,6 +226,12 @@ def check_payloaders(path):
             interval = re.search(r'rtph26[45]pay\b.*config-interval=(-?\d+)', line)
             if interval and interval[1] != PARAMETER_SETS:
                 complain(path, f'config-interval={interval[1]} of a payloader: it is {PARAMETER_SETS} everywhere')
+        for line in launch_lines(path):
+            for payloader in re.findall(r'\brtph26[45]pay\b[^!]*(?:! udpsink\b)?', line):
+                sends = 'udpsink' in payloader or 'name=pay0' in payloader
+                if sends and 'config-interval' not in payloader:
+                    complain(path, f'"{payloader.strip()}" without config-interval={PARAMETER_SETS}: '
+                                   'a receiver that comes later plays nothing')
 
 
 PARAMETER_SETS = re.search(r'rtph264pay config-interval=(\d+)',
@@ -232,13 +248,15 @@ BEFORE_JPEG = re.search(r'gstreamer1.0-plugins-good +(.* ! )jpegenc\n',
 
 
 def check_encoders(path):
-    if (path.suffix == '.launch' and 'h264dec' not in path.read_text('utf-8')) or path.name == 'rtsp_mount.c':
-        text = '\n'.join(line for line in path.read_text('utf-8').splitlines() if not line.startswith('#'))
-        text = re.sub(r'["\\\s]+', ' ', text)
-        found = re.findall(r'(.{0,200})! (?:\$\{ENCODER\}|(?!jpegenc)\w+enc\b)', text)
+    text = path.read_text('utf-8', errors='replace')
+    lines_of_ours = ((path.suffix == '.launch' and 'h264dec' not in text) or path.suffix == '.md' or
+                     path.name == 'rtsp_mount.c' or
+                     (path.suffix == '.cpp' and path.relative_to(TOP).parts[0] == 'plugins'))
+    for line in launch_lines(path) if lines_of_ours else []:
+        found = re.findall(r'(.{0,200})! (?:\$\{ENCODER\}|(?!jpegenc)\w+enc\b)', line)
         if not all(before.endswith(BEFORE_ENCODER + ' ') for before in found):
             complain(path, f'an encoder without "{BEFORE_ENCODER}" in front')
-        if not all(before.endswith(BEFORE_JPEG) for before in re.findall(r'(.{0,200})jpegenc\b', text)):
+        if not all(before.endswith(BEFORE_JPEG) for before in re.findall(r'(.{0,200}! )jpegenc\b', line)):
             complain(path, f'jpegenc without "{BEFORE_JPEG}" in front')
 
 
@@ -321,6 +339,8 @@ for each in files():
     check_json(each)
 for each in TOP.glob('*.md'):
     check_links(each)
+    check_payloaders(each)
+    check_encoders(each)
     check_upright(each)
 check_shared()
 check_folder_sizes()
