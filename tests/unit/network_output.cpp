@@ -271,6 +271,43 @@ START_TEST(boxes_of_yolox_are_decoded_and_its_pictures_have_values_to_255) {
 }
 END_TEST
 
+START_TEST(a_box_that_is_clipped_away_at_the_edge_is_left_out_and_ends_no_stream) {
+  for (const std::size_t side : {std::size_t{2}, std::size_t{3}})
+    for (const float size : {0.f, -.5f}) {
+      auto rows = yolo(kCells, 80, false);
+      rows[5] = rows[kCells / 3];  // another person
+      rows[5][side] = size;
+      expect_person("YOLO 8", {with_batch(transposed(rows_of(rows)))});
+    }
+  auto rows = end_to_end(300);
+  rows[2] = {96, 10, 96, 42, .9f, 0};
+  expect_person("end to end", {with_batch(rows_of(rows))});
+  rows = end_to_end(300);
+  rows[0] = rows[1] = rows[2] = {0, 64, 30, 64, .9f, 0};  // the only boxes
+  const Reading alone = read({with_batch(rows_of(rows))});
+  ck_assert(alone.wrong.empty() && alone.hits.empty());
+}
+END_TEST
+
+// The first run decides the layout; each later one is judged, too.
+START_TEST(a_later_run_most_of_whose_boxes_have_no_size_is_refused) {
+  NetworkReader reader(kInput, {});
+  std::vector<PersonDetection> hits;
+  auto rows = yolo(kCells, 80, false);
+  const auto wrong = [&] {
+    const Output output = with_batch(transposed(rows_of(rows)));
+    return reader.read(std::vector{NetworkOutput{output.values, output.shape}}, kThreshold, hits)
+        .value_or("");
+  };
+  ck_assert(wrong().empty() && hits.size() == 1);
+  for (std::size_t i = 0; i < kCells / 2 + 1; ++i) rows[i][2] = 0;
+  ck_assert(wrong().find("have no size") != std::string::npos);
+  ck_assert(hits.size() == 1);
+  rows[0][2] = rows[1][2] = 9;
+  ck_assert(wrong().empty());
+}
+END_TEST
+
 START_TEST(what_cannot_be_read_is_refused_with_its_shape_and_the_reason) {
   std::vector<std::vector<float>> rows = yolo(kCells, 80, false);
   rows[3][4] = -3.5f;
@@ -281,9 +318,6 @@ START_TEST(what_cannot_be_read_is_refused_with_its_shape_and_the_reason) {
   rows = yolo(kCells, 80, false);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i][2] = -1;
   expect_refused("boxes that are not decoded", {with_batch(transposed(rows_of(rows)))}, "have no size");
-  rows = yolo(kCells, 80, false);
-  rows[kCells / 3][3] = 0;
-  expect_refused("a person without a size", {with_batch(transposed(rows_of(rows)))}, "have no size");
   rows = end_to_end(300);
   for (auto& row : rows) row[5] += .5f;
   expect_refused("six numbers without a class", {with_batch(rows_of(rows))}, "no probabilities");
@@ -336,6 +370,8 @@ int main() {
        two_outputs_without_a_background_begin_with_the_first_class,
        of_several_outputs_the_list_of_boxes_is_read_wherever_it_stands,
        boxes_of_yolox_are_decoded_and_its_pictures_have_values_to_255,
+       a_box_that_is_clipped_away_at_the_edge_is_left_out_and_ends_no_stream,
+       a_later_run_most_of_whose_boxes_have_no_size_is_refused,
        what_cannot_be_read_is_refused_with_its_shape_and_the_reason,
        numbers_that_are_not_finite_are_no_boxes});
 }

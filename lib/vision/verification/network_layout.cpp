@@ -239,22 +239,19 @@ class Decision {
     layout_.object_score = *object ? kBox : -1;
     layout_.in_shares = is_in_shares(table, 0);
     if (!choose_class(kBox + *object, table.numbers - kBox - *object, 0)) return false;
-    int sizeless = 0, boxes = 0;
+    bool sized = true;
     double farthest = 0;
     bool certain = true;  // that there is an object: YOLO 6 says so of each box
     for (int i = 0; i < table.boxes; ++i) {
       if (!table.holds_box(i, 0)) continue;
-      ++boxes, sizeless += table.at(i, 2) <= 0 || table.at(i, 3) <= 0;
+      sized = sized && table.at(i, 2) > 0 && table.at(i, 3) > 0;
       farthest = std::max({farthest, table.at(i, 0), table.at(i, 1)});
       certain = certain && table.at(i, kBox) == 1;
     }
     const bool of_yolox = *object && !certain && cells_of(input_, table.boxes);
     layout_.takes_bytes = of_yolox;
     const double reach = kFarthestOffset * std::max(input_.width, input_.height);
-    if (of_yolox && (sizeless > 0 || farthest < reach))
-      layout_.box = Box::cells, layout_.in_shares = false;
-    else if (2 * sizeless > boxes)
-      return refuse("boxes have no size: export it with its boxes decoded");
+    if (of_yolox && (!sized || farthest < reach)) layout_.box = Box::cells, layout_.in_shares = false;
     return true;
   }
 

@@ -48,6 +48,19 @@ Box decoded(const NetworkTable& table, int i, Size input, std::span<const int> s
   return {};
 }
 
+// A network that returns boxes all over the picture gives each a size, or its boxes are not decoded. Lists of found
+// objects may hold nothing but a box that was clipped away at the picture's edge.
+bool mostly_sizeless(const NetworkTable& table, const NetworkLayout& layout) {
+  if (layout.box != NetworkLayout::Box::middle) return false;
+  int boxes = 0, sizeless = 0;
+  for (int i = 0; i < table.boxes; ++i) {
+    if (!table.holds_box(i, layout.first)) continue;
+    ++boxes;
+    sizeless += table.at(i, layout.first + 2) <= 0 || table.at(i, layout.first + 3) <= 0;
+  }
+  return 2 * sizeless > boxes;
+}
+
 Box box_of(const NetworkTable& table, int i, const NetworkLayout& layout, Size input) {
   const auto n = [&](int k) { return table.at(i, layout.first + k); };
   if (layout.box == NetworkLayout::Box::cells) {
@@ -73,6 +86,7 @@ std::string NetworkReader::read_rows(std::span<const NetworkOutput> outputs, dou
   const auto scores =
       table_of(outputs[static_cast<std::size_t>(layout.scores_output)], layout.score_numbers, layout.by_box);
   if (!boxes || !scores || boxes->boxes != scores->boxes) return "the shape was another one before";
+  if (mostly_sizeless(*boxes, layout)) return "boxes have no size: export it with its boxes decoded";
   for (int i = 0; i < boxes->boxes; ++i) {
     if (!boxes->holds_box(i, layout.first)) continue;
     double score = scores->at(i, layout.score);
@@ -85,7 +99,7 @@ std::string NetworkReader::read_rows(std::span<const NetworkOutput> outputs, dou
     if (!(score >= threshold)) continue;
     const Box box = box_of(*boxes, i, layout, input_);
     if (!std::isfinite(box.width) || !std::isfinite(box.height)) continue;
-    if (box.width <= 0 || box.height <= 0) return "boxes have no size: export it with its boxes decoded";
+    if (box.width <= 0 || box.height <= 0) continue;  // clipped at the picture's edge
     hits.push_back({box, score});
   }
   return {};

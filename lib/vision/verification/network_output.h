@@ -14,16 +14,17 @@ namespace cerberus::vision {
 
 // Reads the outputs of a network, run by run. The first run that returns any box decides the layout (N boxes, C classes;
 // N x K may also be K x N, with a batch of 1 or without one):
-// - YOLO 5 and 7: N x (4 + 1 + C), the middle, width and height, the score that there is an object, scores of the classes;
+// - YOLO 5, 6 and 7: N x (4 + 1 + C), the middle, width and height, the score that there is an object, scores of the classes;
 // - YOLO 8 and 11: (4 + C) x N, the same without the object's score; numbers behind the classes are left out;
 // - YOLOX: as YOLO 5, with one box for each cell; boxes in cells and logarithms are decoded;
-// - end to end: N x 6, left, top, right, bottom, score, class; N x 5, the same with one class;
+// - end to end (YOLO 10): N x 6, left, top, right, bottom, score, class; N x 5, the same with one class;
 // - SSD: 1 x 1 x N x 7, picture, class, score, left, top, right, bottom; or two outputs, N x 4 (left, top, right, bottom)
 //   and N x C, whose first class is the background where the scores of each box add up to 1.
 // Of several outputs those are taken that have such a shape. Coordinates are in pixels of the input, or in shares of it
 // where none is larger than a share can be. Layouts of one shape are told apart by the number of boxes (YOLO has 1 or 3
 // for each cell of its input), by what the numbers can be, and by the number of classes; where that does not suffice, and
-// where scores are beyond 0 to 1 or boxes have no size, the outputs are refused.
+// where scores are beyond 0 to 1 or most boxes have no size, the outputs are refused. A single box without a size is no
+// person.
 class NetworkReader {
  public:
   // input: width and height of the network's picture in pixels.

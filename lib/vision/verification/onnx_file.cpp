@@ -195,8 +195,9 @@ std::optional<Buffer> full_factors(Bytes tensor, const std::vector<std::uint64_t
 
 std::optional<Size> onnx_input_size(Bytes model) {
   constexpr std::uint64_t kLargest = 8192;
-  constexpr std::uint64_t kOldestVersion = 3,
-                          kNoVersion = 100;  // the fields that are read are the same in all
+  // Versions of the format; the fields that are read here are the same in all. From kNoVersion on the number shows that
+  // the file is no ONNX model. Chosen: ten times the version of 2024.
+  constexpr std::uint64_t kOldestVersion = 3, kNoVersion = 100;
   Bytes graph;
   std::uint64_t version = 0;
   Message reader(model);
