@@ -12,7 +12,7 @@ namespace cerberus::record {
 class TimeFiller {
  public:
   struct Parameters {
-    // So many units in a row that have no place are a stream without times. Chosen: four seconds at 25 a second. Guarded
+    // So many units without a time, from the first one on, are a stream without times. Chosen: four seconds at 25 a second. Guarded
     // by the test of a stream in which none ever comes.
     int patience = 100;
   };
@@ -23,7 +23,7 @@ class TimeFiller {
     timed,     // it has a time of its own
     placed,    // `decode` and `presentation` are filled in, as far as the one before had them
     left_out,  // nothing tells its time
-    hopeless,  // none has told one for too long
+    hopeless,  // no unit of the stream has had a time, for too long
   };
 
   TimeFiller() : TimeFiller(Parameters{}) {}
@@ -37,7 +37,10 @@ class TimeFiller {
       return Result::timed;
     }
     const std::optional<Time> step = distance();
-    if (!step) return ++missed_ < parameters_.patience ? Result::left_out : Result::hopeless;
+    if (!step) {
+      if (order(last_)) return Result::left_out;  // times come; the next one tells the distance
+      return ++missed_ < parameters_.patience ? Result::left_out : Result::hopeless;
+    }
     if (last_.presentation) times.presentation = *last_.presentation + *step;
     if (last_.decode) times.decode = *last_.decode + *step;
     const std::optional<Time> measured = measured_;
@@ -75,7 +78,7 @@ class TimeFiller {
   Parameters parameters_;
   std::optional<Time> nominal_, measured_;
   Times last_;
-  int missed_ = 0;  // in a row
+  int missed_ = 0;  // before the first time
 };
 
 }  // namespace cerberus::record

@@ -60,8 +60,16 @@ START_TEST(units_before_the_first_time_are_left_out_and_a_stream_in_which_none_e
   auto first = at(1000);
   ck_assert(filler.fill(first) == Result::timed);
   ck_assert(!filler.lacks_times());
-  for (int k = 0; k < 99; ++k)
+  for (int k = 0; k < 300; ++k)
     ck_assert(filler.fill(none) == Result::left_out);  // nothing tells the distance
+  auto second = at(1040);
+  ck_assert(filler.fill(second) == Result::timed);
+  ck_assert(filler.fill(none) == Result::placed);
+  filler.reset();
+  for (int k = 0; k < 99; ++k) {
+    none = {};
+    ck_assert(filler.fill(none) == Result::left_out);
+  }
   ck_assert(filler.fill(none) == Result::hopeless);
 }
 END_TEST
