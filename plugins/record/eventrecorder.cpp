@@ -47,10 +47,9 @@
  *
  * `index` is an SQLite database (WAL) with the table `recordings`, a row for each file: `file`, `lines`, `picture`
  * (names below `location`), `camera`, `event`, `part`, `begin`, `end` (nanoseconds since 1970, UTC), `reason`, `tracks`,
- * `kinds`, `rule`, `size` (bytes of all three files), `people` (the most at once), `open` (1 while it is written), `broken` (1: nothing
- * in it plays), `keep`. Other programs may read it at any
- * time, and set `keep`; so does the action signal `keep-recording` (location, keep). Rows and files are reconciled at
- * the start. Retention deletes file, lines, picture and row together, by `retention-age`, `retention-size` and
+ * `kinds`, `rule`, `size` (bytes of all three files), `people` (the most at once), `open` (1 while it is written),
+ * `broken` (1: nothing in it plays), `keep`. Other programs may read it at any time, and set `keep`; so does the action
+ * signal `keep-recording` (location, keep). Rows and files are reconciled at the start. Retention deletes file, lines, picture and row together, by `retention-age`, `retention-size` and
  * `retention-free`, unless `keep` is set. Files that the index does not name are never deleted.
  *
  * The end of the stream is posted when the files are complete, and once more when a pause ends; not where a flush (a seek) came

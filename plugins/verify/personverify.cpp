@@ -24,22 +24,22 @@
  * they stand: what is much higher or lower is no person, and hits down to .65 of `threshold` count where they are as high,
  * or show somebody who is known; a track that such a hit alone shows is published as it was.
  *
- * The detector is OpenCV's one for pedestrians (histograms of oriented gradients, trained on the Daimler data set):
- * upright people who are at least 24 pixels high. A look shows it up to two regions, as those near the camera and those far
+ * People are found by OpenCV's Daimler detector (histograms of oriented gradients, trained on that data set):
+ * upright ones who are at least 24 pixels high. A look shows it up to two regions, as those near the camera and those far
  * away need different scales; a network sees one. It costs up to 60 ms a look on one core. It does not see people who
  * sit or lie, or only their upper half.
  *
  * `model` names a network instead: an ONNX file whose input has a fixed size (1 x 3 x height x width, values 0 to 1;
- * YOLOX 0 to 255). It sees the brightness only, as grey. Outputs that are read, of N boxes and C classes (also
- * transposed, and without the batch):
+ * YOLOX 0 to 255). It sees the brightness only, as grey. Outputs of YOLO 5 to 8, 10 and 11, YOLOX and SSD are read,
+ * of N boxes and C classes (also transposed, and without the batch):
  *
- * - YOLO 5 and 7: 1 x N x (5 + C), YOLO 8 and 11: 1 x (4 + C) x N, YOLOX with or without `--decode_in_inference`;
+ * - YOLO 5, 6 and 7: 1 x N x (5 + C), YOLO 8 and 11: 1 x (4 + C) x N, YOLOX with or without `--decode_in_inference`;
  * - end to end (YOLO 10): 1 x N x 6, corners, score and class;
  * - SSD: 1 x 1 x N x 7, or 1 x N x 4 (corners) and 1 x N x C.
  *
  * The shape, the number of boxes for that input and the numbers themselves tell them apart; where they do not, the
- * number of classes does, which `labels` names. Outputs that are none of these, boxes without a size, and scores beyond 0
- * to 1 are an error that says so, at the start, or where the network first finds something. Which layers can be run
+ * number of classes does, which `labels` names. Outputs that are none of these, mostly boxes without a size, and scores beyond
+ * 0 to 1 are an error that says so, at the start, or where the network first finds something. Which layers can be run
  * depends on OpenCV: that of Debian 12 (4.6) is older than YOLO 8, whose one step that it cannot do is rewritten while the
  * file is read; a model that cannot be run is an error at the start. No model comes with Cerberus, and each has its
  * licence: YOLO 5, 8, 10 and 11 are AGPL-3.0 (Ultralytics also sells others), YOLO 7 is GPL-3.0, YOLOX Apache-2.0, SSD of

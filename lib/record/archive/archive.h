@@ -24,12 +24,14 @@ class Archive {
     Limits limits;
   };
 
-  // Opens the index and reconciles rows and files: a row without its file is removed with what else is left of it, or
-  // alone where it is open; one that a process left open is closed with what is there (MP4 is repaired, and a file in which nothing plays is marked as
-  // broken); one of a
-  // file without content is removed with it. A damaged index is renamed to NAME.damaged and begun anew. Then retention
-  // is applied: returns the files that were deleted. An index that cannot be opened is tried again by retain(), every
-  // 10 s; what is recorded until then gets its rows then, while the process runs and the file is there.
+  // Opens the index and reconciles rows and files:
+  // - a row without its file is removed with what else is left of it, or alone where it is open;
+  // - a row that a process left open is closed with what is there: MP4 is repaired, a file in which nothing plays is
+  //   marked as broken;
+  // - a row of a file without content is removed with it.
+  // A damaged index is renamed to NAME.damaged and begun anew. Then retention is applied: returns the files that were
+  // deleted. An index that cannot be opened is tried again by retain(), every 10 s; what is recorded until then gets its
+  // rows then, while the process runs and the file is there.
   std::vector<std::string> open(const Settings& settings, const Surroundings& now);
   void set_limits(const Limits& limits) { settings_.limits = limits; }
   void close();

@@ -41,7 +41,7 @@ struct Wanted {
   std::string camera;
   std::optional<Time> from, until;    // of their begin: `from` counts, `until` does not
   std::string reason;                 // as of read_reasons(); empty: every one
-  bool kept = false;                  // those alone that are to be kept
+  bool kept = false;                  // only recordings whose `keep` is set
   std::optional<std::int64_t> below;  // ids below this one: what follows a list whose last id it is
   std::size_t most = 200;
 };

@@ -17,9 +17,9 @@ struct LumaStretchParameters {
   // The least part of the range that is stretched. Derived: 10 K of a thermal camera with .01 K to a level, 16 levels of 10
   // bits; less is noise.
   double least = 1.0 / 64;
-  // Values that are spread over less are one: there is nothing to stretch yet. Derived: a fifth of a thermal camera's noise.
+  // A picture whose values are spread over less is even: the stretch begins with the first one that is not. Derived: a fifth of a thermal camera's noise.
   double even = 1.0 / 4096;
-  // Left on either side of the values, in spans of them: who comes in is warmer than the room. Derived: a person at 305 K in
+  // Left on either side of the values, in spans of them, for a person who enters and is warmer than the room. Derived: a person at 305 K in
   // a room of 290 to 299 K lies within, or is white.
   double margin = 0.25;
   // Shares of the pixels: below and above lie single hot and dead pixels; and what may lie outside before the part moves.
