@@ -20,7 +20,8 @@ void FrameHistory::lose() {
   if (++lost_ > parameters_.lost_pictures) drop();
 }
 
-std::optional<double> FrameHistory::repeat(std::optional<Time> time, double nominal, bool damaged) {
+std::optional<FrameHistory::Repeated> FrameHistory::repeat(std::optional<Time> time, double nominal,
+                                                           bool damaged) {
   if (!any_) return std::nullopt;
   ++repeats_;
   damage_ |= damaged;
@@ -31,9 +32,9 @@ std::optional<double> FrameHistory::repeat(std::optional<Time> time, double nomi
     const double seconds = seconds_between(*previous_, *time);
     held_ =
         std::max(held_, std::min(seconds, damaged ? parameters_.longest_damage : parameters_.longest_repeat));
-    return seconds;
+    return Repeated{seconds, time};
   }
-  return repeats_ * even;
+  return Repeated{repeats_ * even, time};
 }
 
 void FrameHistory::begin_picture(std::optional<Time> time) {
@@ -44,7 +45,8 @@ void FrameHistory::begin_picture(std::optional<Time> time) {
   previous_ = shown_ = time;
 }
 
-// Asked once a frame. rhythm: of the stream, seconds.
+// Decides whether the time of this frame is wrong by itself. Counts such frames in a row: call it once for each frame.
+// rhythm: usual distance of the stream's frames, seconds.
 bool FrameHistory::is_outlier(std::optional<Time> time, double rhythm) {
   const double step = any_ && shown_ && time ? seconds_between(*shown_, *time) : 0;
   const double gap = std::max(parameters_.gap_seconds, parameters_.gap_factor * rhythm);

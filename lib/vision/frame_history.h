@@ -47,9 +47,14 @@ class FrameHistory {
   // row.
   void lose();
 
-  // Records a frame that repeats the last picture, or (damaged) one in whose place the last picture counts. Returns how
-  // long ago that came, in seconds; nothing where a scene begins. time, nominal: as of next().
-  std::optional<double> repeat(std::optional<Time> time, double nominal, bool damaged = false);
+  struct Repeated {
+    double seconds = 0;  // since the last picture
+    std::optional<Time>
+        time;  // of this frame: its own, or, where that is an outlier, the one at the usual distance
+  };
+  // Records a frame that repeats the last picture, or (damaged) one in whose place the last picture counts. Returns
+  // nullopt where a scene begins. time, nominal: as of next().
+  std::optional<Repeated> repeat(std::optional<Time> time, double nominal, bool damaged = false);
 
   // Running time of the last frame with a picture of its own, where it had one.
   std::optional<Time> previous() const { return previous_; }

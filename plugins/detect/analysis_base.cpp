@@ -130,10 +130,11 @@ GstFlowReturn repeat_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBu
   const bool goes_on = priv.analyser->measures_camera() ? priv.history.misses_frames(time, nominal)
                                                         : path_point(buffer).has_value();
   if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) && !goes_on) priv.history.drop();
-  const auto since = priv.history.repeat(time, nominal, damaged);
-  if (!since) return GST_FLOW_OK;  // of nothing
+  const auto repeated = priv.history.repeat(time, nominal, damaged);
+  if (!repeated) return GST_FLOW_OK;  // of nothing
+  frame.running_time = clock_time(repeated->time);
   frame.fresh = false;
-  frame.seconds = *since;
+  frame.seconds = repeated->seconds;
   priv.analyser->repeat(frame);
   return GST_FLOW_OK;
 }

@@ -211,6 +211,28 @@ GST_START_TEST(a_repeated_frame_has_the_pose_of_its_picture_and_the_rate_of_the_
 }
 GST_END_TEST
 
+// One frame's time is hours ahead. It counts at its place in the stream, so that the base's rates of later frames stay.
+GST_START_TEST(a_repeated_frame_whose_time_is_far_off_counts_at_its_place) {
+  for (const GstBufferFlags mark : {GST_BUFFER_FLAG_GAP, GST_BUFFER_FLAG_CORRUPTED}) {
+    Line line("motiondetect name=motion horizontal-fov=60 ! identity");
+    for (int k = 0; k < 20; ++k)
+      gst_harness_push_upstream_event(line.harness, base_event(k, k * scene::kStep));
+    for (int k = 0; k < 20; ++k) {
+      GstBuffer* in = scene::grey_buffer(World{}, k);
+      if (k == 10) {
+        GST_BUFFER_PTS(in) += 5 * 3600 * GST_SECOND;
+        GST_BUFFER_FLAG_SET(in, mark);
+      }
+      GstBuffer* out = line.through(in);
+      const CerberusBase* base = cerberus_buffer_peek_base(out);
+      fail_unless(base && base->source == CERBERUS_BASE_REPORTED && base->yaw_rate == k, "frame %d: %g", k,
+                  base ? base->yaw_rate : -1);
+      gst_buffer_unref(out);
+    }
+  }
+}
+GST_END_TEST
+
 // But for the trails, which fade with time.
 GST_START_TEST(a_repeated_frame_is_drawn_on_as_its_picture_was) {
   Line line("motiondetect confirm-time=0 ! motionoverlay show-trails=false",
@@ -409,6 +431,7 @@ Suite* repeated_suite() {
   tcase_add_loop_test(tests, a_mark_of_dropped_frames_on_a_repeated_frame_ends_no_scene, 0, 2);
   tcase_add_test(tests, a_repeated_frame_is_drawn_on_as_its_picture_was);
   tcase_add_test(tests, a_repeated_frame_has_the_pose_of_its_picture_and_the_rate_of_the_base);
+  tcase_add_test(tests, a_repeated_frame_whose_time_is_far_off_counts_at_its_place);
   tcase_add_test(tests, encoded_frames_from_a_loss_to_the_next_keyframe_are_marked);
   tcase_add_loop_test(tests, a_damaged_picture_counts_as_the_last_whole_one, 0, G_N_ELEMENTS(kLines));
   tcase_add_test(tests, live_motion_ends_by_the_clock_when_frames_stop);
