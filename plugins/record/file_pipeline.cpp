@@ -14,8 +14,8 @@ namespace {
 // the disk .5 s after a keyframe at 25 frames a second, and a killed process loses no more. Measured: smaller ones cost
 // size (1.6 kB each). Guarded by the benchmark first_bytes.
 constexpr guint kFragmentMilliseconds = 400;
-// Frames of the first one, which the `moov` follows: a file whose writer is killed before that plays nowhere. Of two,
-// because qtdemux drops a first fragment of one. Guarded by the tests of files that are never closed or cut off.
+// Frames of the first one, which the `moov` follows: a file whose writer is killed before that plays nowhere. Of two
+// at every rate, because qtdemux drops a first fragment of one. Guarded by the tests of files that are never closed or cut off.
 constexpr double kFirstFrames = 2.2;  // the muxer ends it where another frame would make it longer
 constexpr int kUnbuffered = 2;        // filesink: a buffer of 64 KiB would delay the first byte by seconds
 // Audio that is so much later than the video is no longer waited for: a muxer writes nothing while one track is silent.
@@ -28,7 +28,7 @@ guint first_fragment(GstCaps* caps) {
       frames <= 0 || seconds <= 0)
     return kFragmentMilliseconds;
   const double milliseconds = kFirstFrames * 1000 * seconds / frames;
-  return static_cast<guint>(std::clamp<double>(milliseconds, 1, kFragmentMilliseconds));
+  return static_cast<guint>(std::clamp<double>(milliseconds, 1, G_MAXUINT));
 }
 
 GstPadProbeReturn after_first_fragment(GstPad* pad, GstPadProbeInfo* info, gpointer) {

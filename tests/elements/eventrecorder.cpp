@@ -248,6 +248,36 @@ GST_START_TEST(a_file_plays_from_its_fifth_frame_on_whatever_happens) {
 }
 GST_END_TEST
 
+// A first fragment of one frame is one that players drop. A keyframe every 8 frames.
+GST_START_TEST(a_file_of_two_frames_a_second_plays_from_its_first_frame_on_whatever_happens) {
+  std::string caps = recorder_rig::kH264;
+  caps.replace(caps.find("25/1"), 4, "2/1");
+  Rig rig(8, caps.c_str());
+  g_object_set(rig.element, "pre-roll", guint64{0}, nullptr);
+  rig.start();
+  const auto play = [&](guint32 from, guint32 to) {
+    for (guint32 k = from; k <= to; ++k) {
+      GstBuffer* frame = unit(k, k * GST_SECOND / 2, k % 8 == 0, k * GST_SECOND / 2);
+      GST_BUFFER_DURATION(frame) = GST_SECOND / 2;
+      fail_unless_equals_int(rig.video->push(frame), GST_FLOW_OK);
+    }
+  };
+  play(0, 8);
+  rig.start_event();
+  play(9, 14);
+  g_autoptr(GstStructure) started = rig.wait_for_file("started");
+  const std::string file = gst_structure_get_string(started, "location");
+  std::vector<Frame> frames;
+  for (int k = 0; k < 500 && frames.empty(); ++k) {
+    g_usleep(10 * 1000);
+    try_to_read(file, frames);
+  }
+  fail_unless(frames.size() >= 2 && frames[0].number == 8, "%zu frames from %u", frames.size(),
+              frames.empty() ? 0 : frames[0].number);
+  fail_unless(numbers_of(frames) == range(8, 8 + static_cast<guint32>(frames.size()) - 1));
+}
+GST_END_TEST
+
 GST_START_TEST(stopping_without_end_of_stream_completes_the_file) {
   Rig rig;
   rig.start();
@@ -725,6 +755,7 @@ static Suite* eventrecorder_suite() {
   tcase_add_test(tests, the_pre_roll_is_on_disk_before_another_frame_comes);
   tcase_add_test(tests, a_file_that_is_never_closed_plays_up_to_its_last_second);
   tcase_add_test(tests, a_file_plays_from_its_fifth_frame_on_whatever_happens);
+  tcase_add_test(tests, a_file_of_two_frames_a_second_plays_from_its_first_frame_on_whatever_happens);
   tcase_add_test(tests, stopping_without_end_of_stream_completes_the_file);
   tcase_add_test(tests, the_end_reaches_the_application_of_a_bin_that_has_forgotten_that_it_plays);
   tcase_add_test(tests, the_end_is_posted_again_after_a_pause);
