@@ -452,11 +452,12 @@ gboolean automatic(CerberusPanTiltSink* sink) {
   return instead_of_a_choice(sink, [](auto& head, auto now, auto& out) { return head.automatic(now, out); });
 }
 gboolean follow(CerberusPanTiltSink* sink, guint id) {
+  if (id == 0) return FALSE;  // no track has it: the choice before stays
   HeadSession& session = sink->priv->session;
-  const bool decided = guarded(sink, false, [&] {
-    return id != 0 && ask_to_follow(GST_BASE_SINK_PAD(session.sink), session.head.load(), id);
-  });
-  session.chosen = decided;
+  const bool decided = guarded(
+      sink, false, [&] { return ask_to_follow(GST_BASE_SINK_PAD(session.sink), session.head.load(), id); });
+  // What holds an earlier choice and does not answer now is told its end as well.
+  if (decided) session.chosen = true;
   const gboolean done =
       manual(sink, [=](auto& head, auto now, auto& out) { return head.follow(id, now, out, decided); });
   if (!done) guarded(sink, [&] { end_choice(sink); });

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // pantiltsink's action signal `follow`: the application chooses the track that the head follows.
+#include <vector>
+
+#include "cerberus/private/follow_query.hpp"
 #include "head_rig.h"
 
 namespace {
@@ -184,6 +187,30 @@ GST_START_TEST(no_track_is_chosen_without_a_head_nor_without_an_identity) {
 }
 GST_END_TEST
 
+GST_START_TEST(a_refused_choice_leaves_the_one_before_with_the_fusion_that_holds_it) {
+  std::vector<guint> asked;  // of a pirfusion upstream, which takes every choice
+  Scene scene;
+  gst_pad_set_query_function_full(
+      scene.rig.harness->srcpad,
+      [](GstPad* pad, GstObject* parent, GstQuery* query) -> gboolean {
+        std::string_view head;
+        guint track = 0;
+        if (!cerberus::parse_follow_query(query, head, track))
+          return gst_pad_query_default(pad, parent, query);
+        static_cast<std::vector<guint>*>(pad->querydata)->push_back(track);
+        return TRUE;
+      },
+      &asked, nullptr);
+  fail_unless(scene.rig.follow(31));
+  fail_if(scene.rig.follow(0));
+  fail_unless(asked == std::vector<guint>{31});
+  fail_unless(scene.rig.call("auto"));
+  fail_unless(asked == (std::vector<guint>{31, 0}));
+  fail_unless(scene.rig.call("auto"));
+  fail_unless(asked.size() == 2);
+}
+GST_END_TEST
+
 GST_START_TEST(a_flush_does_not_unmake_the_choice) {
   Scene scene;
   fail_unless(scene.rig.follow(2));
@@ -221,6 +248,7 @@ Suite* pantiltsink_follow_suite() {
   tcase_add_test(tests, a_chosen_track_that_never_comes_is_warned_of_and_the_usual_choice_goes_on_meanwhile);
   tcase_add_test(tests, of_what_the_application_asks_for_the_last_counts);
   tcase_add_test(tests, no_track_is_chosen_without_a_head_nor_without_an_identity);
+  tcase_add_test(tests, a_refused_choice_leaves_the_one_before_with_the_fusion_that_holds_it);
   tcase_add_test(tests, a_flush_does_not_unmake_the_choice);
   return suite;
 }
