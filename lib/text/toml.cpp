@@ -160,9 +160,15 @@ TomlValue convert(const toml::node& node) {
   return value;
 }
 
-// A text as one short line of printable letters.
+// A text as one short line of printable letters, without the user and the password of an address: whatever the mistake is,
+// nothing between // and the last @ is shown.
 std::string shown(std::string_view text) {
   constexpr std::size_t kMost = 60;
+  std::string whole(text);
+  const std::size_t user = whole.find("//"), host = whole.rfind('@');
+  if (user != whole.npos && host != whole.npos && user + 2 < host)
+    whole.replace(user + 2, host - user - 2, "...");
+  text = whole;
   const bool cut = text.size() > kMost;
   std::size_t size = cut ? kMost : text.size();
   while (cut && size > 0 && (static_cast<unsigned char>(text[size]) & 0xc0) == 0x80)

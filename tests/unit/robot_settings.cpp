@@ -126,6 +126,8 @@ START_TEST(every_mistake_is_reported_with_its_line) {
        "r.toml:2: this is not TOML: a value, a key or a bracket is missing or misplaced; the line is: [&"},
       {"name = \"a\"\nport = ]\n", "r.toml:2: "},
       {"[mqtt]\npassword = \"hunter2\n", "; the line begins with: password"},
+      {"[[camera]]\nuri = \"rtsp://anna:hunter2@b/1\n", "; the line is: uri = \"rtsp://...@b/1"},
+      {"[page]\nport = \"http://anna:hunter2@b/1\"\n", "and not \"http://...@b/1\""},
       {"[mode]\nstart = \"on\"\n", "and not \"on\""},
       {"name = \"a\\nb\"\n", "r.toml:1: \"name\" of the file is one line"},
       {"page = 3\n", "r.toml:1: \"page\" of the file is a table of its own"},
@@ -188,7 +190,7 @@ START_TEST(every_mistake_is_reported_with_its_line) {
       {"[page]\nport = 8554\n[rtsp]\n" SMALLEST, "r.toml:2: \"port\" is 8554 of both [page] and [rtsp]"},
       {"[page]\n[rtsp]\nport = 8080\n" SMALLEST, "r.toml:3: \"port\" is 8080 of both"},
       {"[[camera]]\nname = \"a\"\nkind = \"rtsp\"\nuri = \"rtsp://b\"\nrecord-uri = \"rtsp://c\"\n",
-       "r.toml:5: \"record-uri\" is \"rtsp://c\", and nothing takes that stream"},
+       "r.toml:5: nothing takes the stream of \"record-uri\""},
       {SMALLEST HEAD("visca", "serial:/dev/tty9") "[[camera]]\nname = \"b\"\nkind = \"test\"\n" HEAD(
            "visca", "serial:/dev//tty9"),
        "r.toml:12: \"device\" of camera \"b\" is \"serial:/dev//tty9\", which camera \"front\" uses already"},

@@ -168,9 +168,8 @@ void find_rivals(const Settings& settings, Mistakes& mistakes) {
     if (!camera.source.record_uri.empty() && !records)
       mistakes.push_back(
           {line_of(camera.lines, "record-uri", camera.line),
-           "\"record-uri\" is \"" + camera.source.record_uri +
-               "\", and nothing takes that stream: add a [camera.recorder] with a \"folder\", or "
-               "leave the key out"});
+           "nothing takes the stream of \"record-uri\": add a [camera.recorder] with a \"folder\", or leave "
+           "the key out"});
   }
   compare_ports(settings, mistakes);
 }
