@@ -113,6 +113,17 @@ START_TEST(what_comes_into_the_picture_or_shifts_it_a_little_moves_nothing) {
 }
 END_TEST
 
+// A kettle, an exhaust: what is small is white, and the rest of the picture stays comparable.
+START_TEST(a_small_object_that_is_much_hotter_than_the_scene_moves_nothing) {
+  LumaStretch stretch;
+  const LumaSource before = stretch.stretched(Picture(29000, 31000).source());
+  Picture hot(29000, 31000);  // 2 % of the picture, three spans above the part
+  for (std::size_t i = 0; i < hot.words.size(); i += 47) hot.words[i] = 31500 + 3 * 3000;
+  const LumaSource now = stretch.stretched(hot.source());
+  ck_assert(now.low == before.low && now.span == before.span);
+}
+END_TEST
+
 START_TEST(the_part_follows_a_drift_slowly_and_stops_where_it_fits) {
   LumaStretch stretch;
   LumaSource last = stretch.stretched(Picture(29000, 31000).source());
@@ -184,6 +195,7 @@ int main() {
                        an_even_picture_stays_as_it_is_until_there_is_something_in_it,
                        hot_and_dead_pixels_do_not_count, ordinary_video_and_bytes_stay_as_they_are,
                        what_comes_into_the_picture_or_shifts_it_a_little_moves_nothing,
+                       a_small_object_that_is_much_hotter_than_the_scene_moves_nothing,
                        the_part_follows_a_drift_slowly_and_stops_where_it_fits,
                        a_part_that_the_values_hardly_fill_is_narrowed_and_given_up_for_ordinary_video,
                        another_scene_has_its_part_at_once, a_picture_that_is_shown_again_has_the_same_part,

@@ -49,7 +49,7 @@ void LumaStretch::follow(const Levels& levels, double range) {
   const Part wanted = part_for(levels, range);
   const double high = part_.low + part_.span;
   if (part_.span == 0 || levels.middle < part_.low || levels.middle > high ||
-      levels.brightest - levels.darkest > 2 * part_.span) {
+      levels.bright - levels.dark > 2 * part_.span) {
     part_ = wanted, moves_ = false;
     return;
   }

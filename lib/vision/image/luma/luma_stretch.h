@@ -34,7 +34,7 @@ struct LumaStretchParameters {
 };
 
 // The part stays as it is while it fits, so that pictures can be compared; else it moves slowly. Where half of the pixels lie
-// outside, or the values fill twice the part, it jumps: the scene is another one.
+// outside, or all values but the `outside` at either end fill twice the part, it jumps: the scene is another one.
 class LumaStretch {
  public:
   // The source with the part of its range that is to be white and black: low and span. A source of bytes, and one whose
