@@ -6,7 +6,7 @@ compared with the one that went into the encoder.
     clients.py WHAT PICTURES [PROGRAM]
 
 WHAT is one of the tests below. PICTURES makes numbered pictures and compares them (pictures.cpp). The clients of a
-stream watch at the same time. Without ffmpeg GStreamer reads alone, and it is said. PROGRAM is cerberus-rtsp or cerberusd.
+stream watch at the same time. Without ffmpeg GStreamer reads alone, and the test counts as skipped. PROGRAM is cerberus-rtsp or cerberusd.
 """
 import os
 import pathlib
@@ -24,7 +24,7 @@ from page_client import Page, Socket
 from rtsp_client import Rtsp
 from support import LIMIT, TOP, gst_launch, must, run
 
-WIDTH, HEIGHT, RATE = 320, 240, 50
+WIDTH, HEIGHT, RATE = 320, 240, 25
 SOME, MANY = 150, 900  # pictures of a file, and of a stream that lasts until its clients have what they need
 NEEDED = 100            # pictures that the client of a stream takes
 PICTURES = os.path.abspath(sys.argv[2])
@@ -87,15 +87,28 @@ def encoder(name, slices=1, gop=RATE):
                    'openh264': f' slice-mode=n-slices num-slices={slices}'}.get(name, '')
 
 
+def lost_datagrams():
+    """How many the kernel has dropped so far because a socket's buffer was full: UDP promises no more, on a busy machine."""
+    names, values = (line.split() for line in pathlib.Path('/proc/net/snmp').read_text('ascii').splitlines()
+                     if line.startswith('Udp:'))
+    return int(values[names.index('RcvbufErrors')])
+
+
 class Readers:
     """Programs that read pictures at the same time."""
 
     def __init__(self, width=WIDTH, height=HEIGHT):
-        self.all, self.size = [], (width, height)
+        self.all, self.size, self.lost = [], (width, height), lost_datagrams()
 
     def add(self, name, before, least, line):
         raw = f'reader{len(self.all)}.raw'
         self.all.append((name, before, raw, least, start([str(word).replace('OUTPUT', raw) for word in line])))
+
+    def judge(self, name, before, raw, least, process):
+        said = ended(process)
+        status, report = run([PICTURES, 'compare', *self.size, before, raw, least])
+        print(f'{name}: {report.splitlines()[-1]}', flush=True)
+        return f'{name}:\n{said}{report}' if status != 0 else ''
 
     def ffmpeg(self, name, before, least, *source):
         if shutil.which('ffmpeg'):
@@ -111,12 +124,12 @@ class Readers:
     def compare(self):
         """Judges all of them when they have ended."""
         wrong = []
-        for name, before, raw, least, process in self.all:
-            said = ended(process)
-            status, report = run([PICTURES, 'compare', *self.size, before, raw, least])
-            print(f'{name}: {report.splitlines()[-1]}', flush=True)
-            if status != 0:
-                wrong.append(f'{name}:\n{said}{report}')
+        for *what, process in self.all:
+            report = self.judge(*what, process)
+            if report and any('udp' in word for word in process.args) and lost_datagrams() > self.lost:
+                print(f'the kernel dropped datagrams that their reader was too slow for: {what[0]} reads once more')
+                report = self.judge(*what, start(process.args))
+            wrong += [report] if report else []
         assert not wrong, '\n'.join(wrong)
 
 
@@ -487,7 +500,7 @@ def test_cerberusd(program):
 def main():
     what, program = sys.argv[1], [os.path.abspath(name) for name in sys.argv[3:]]
     if not shutil.which('ffmpeg'):
-        print('ffmpeg is not installed: only GStreamer reads')
+        print('ffmpeg is not installed: only GStreamer reads, and the test counts as skipped')
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         try:
@@ -497,6 +510,8 @@ def main():
             for process in STARTED:
                 if process.poll() is None:
                     os.killpg(process.pid, signal.SIGKILL)
+    if not shutil.which('ffmpeg'):
+        sys.exit(77)
 
 
 main()
