@@ -89,16 +89,10 @@ double AxisCalibration::seconds_left() const {
 motion::SpeedMap AxisCalibration::speeds() const {
   std::vector<motion::SpeedPoint> points;
   for (std::size_t i = 0; i < runs_.size(); i += 4) {
-    double sum = 0;
-    int count = 0;
-    for (std::size_t k = i; k < i + 4; ++k) {
-      if (!runs_[k].measured) continue;
-      sum += runs_[k].actual;
-      ++count;
-    }
+    const Spread runs = speed_runs(runs_[i].speed);
     // A step of the device that serves two commanded speeds gives no rising table: the first one stays.
-    const bool rises = count > 0 && (points.empty() || sum / count > points.back().actual);
-    if (rises) points.push_back({runs_[i].speed, sum / count});
+    const bool rises = runs.runs > 0 && (points.empty() || runs.mean() > points.back().actual);
+    if (rises) points.push_back({runs_[i].speed, runs.mean()});
   }
   return motion::SpeedMap(std::move(points));
 }
@@ -106,6 +100,7 @@ motion::SpeedMap AxisCalibration::speeds() const {
 void Spread::add(double value) {
   least = runs == 0 ? value : std::min(least, value);
   most = runs == 0 ? value : std::max(most, value);
+  sum += value;
   ++runs;
 }
 
@@ -142,11 +137,10 @@ Spread AxisCalibration::backlash_runs() const {
 
 AxisCalibration::FarApart AxisCalibration::far_apart() const {
   FarApart worst;
-  const motion::SpeedMap map = speeds();
-  for (const motion::SpeedPoint& point : map.points()) {
-    const Spread runs = speed_runs(point.commanded);
-    const double share = (runs.most - runs.least) / point.actual;
-    if (share > parameters_.far_apart && share > worst.share) worst = {point.commanded, share};
+  for (std::size_t i = 0; i < runs_.size(); i += 4) {  // speeds() leaves out those whose mean does not rise
+    const Spread runs = speed_runs(runs_[i].speed);
+    const double share = runs.runs > 0 ? (runs.most - runs.least) / runs.mean() : 0;
+    if (share > parameters_.far_apart && share > worst.share) worst = {runs_[i].speed, share};
   }
   return worst;
 }

@@ -34,8 +34,9 @@ struct CalibrationParameters {
 
 // What the single runs of one quantity gave.
 struct Spread {
-  double least = 0, most = 0;
+  double least = 0, most = 0, sum = 0;
   int runs = 0;
+  double mean() const { return sum / runs; }
   void add(double value);
   // For a user, in units of `unit` and with so many decimals: "4 runs, 4.1 to 4.3".
   std::string text(double unit, int decimals) const;
