@@ -10,7 +10,7 @@
 // after that is sent Stop again.
 //
 // A camera without positions is reckoned to turn as it was sent last, until the Stop that it has acknowledged was sent or
-// its Timeout is over. So is one whose reports do not follow its turns (report_watch.h); before one has, no angle is
+// its Timeout is over. So is one whose reports do not follow its turns (position_proof.h); before one has, no angle is
 // sent as such.
 //
 // A camera that does not answer, or refuses connections, is a fault. It is sent Stop and a new login until it answers;
@@ -23,12 +23,12 @@
 #include <string>
 #include <vector>
 
-#include "drivers/head/report_watch.h"
 #include "drivers/helper/head_device.h"
 #include "drivers/helper/speed_reckoning.h"
 #include "drivers/onvif/approach.h"
 #include "drivers/onvif/homing.h"
 #include "drivers/onvif/login.h"
+#include "drivers/onvif/position_proof.h"
 #include "drivers/onvif/spaces.h"
 #include "drivers/onvif/zoom_lock.h"
 
@@ -155,7 +155,7 @@ class OnvifHead final : public HeadDevice {
   bool told_speeds_ = false;   // to the pipeline, which reckons by them from then on
   bool absolute_ = false;      // AbsoluteMove is there, and was never refused
   bool keeps_limits_ = false;  // it was there at the start, so that the pipeline sends angles and bare speeds
-  ReportWatch reports_;
+  PositionProof reports_;
   std::optional<double> zoom_;                    // read, and not taken yet
   bool seen_moving_ = false, seen_idle_ = false;  // MoveStatus had both values: it is alive
   int failures_ = 0, unreadable_ = 0;             // answers in a row that did not arrive, or are no SOAP

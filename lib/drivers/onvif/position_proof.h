@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "motion/pan_tilt.h"
@@ -13,7 +14,7 @@
 
 namespace cerberus::drivers {
 
-class ReportWatch {
+class PositionProof {
  public:
   using Time = motion::Time;
   using PanTilt = motion::PanTilt;
