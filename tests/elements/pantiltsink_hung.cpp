@@ -90,9 +90,12 @@ GST_START_TEST(a_helper_that_is_late_is_left_alone) {
   const auto helpers = children(kHelper);
   fail_unless_equals_uint64(helpers.size(), 1);
   for (int k = 0; k < 5; ++k) {
+    const auto begin = std::chrono::steady_clock::now();
     kill(helpers.front(), SIGSTOP);
     std::this_thread::sleep_for(200ms);
     kill(helpers.front(), SIGCONT);
+    // A machine that is so busy has stopped it for longer than the promise allows.
+    if (std::chrono::steady_clock::now() - begin >= 400ms) return;
     std::this_thread::sleep_for(100ms);
   }
   fail_unless(p.warnings().find("hangs") == std::string::npos, "%s", p.warned.c_str());
