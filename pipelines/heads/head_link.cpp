@@ -36,7 +36,7 @@ std::string HeadLink::start(const std::string& driver, const HeadSetup& setup) {
   ready_ = false;
   fault_.clear();
   sent_.clear();
-  hung_.clear();
+  lost_ = false;
   lines_ = {};
   watch_.begin(now_is());
   if (std::string wrong = process_.start(helper_arguments(driver, setup)); !wrong.empty()) return wrong;
@@ -63,11 +63,11 @@ void HeadLink::turn(double pan, double tilt) {
 
 std::string HeadLink::serve(int milliseconds) {
   std::string wrong = read(milliseconds);
-  if (hung_.empty()) return wrong;
+  if (!lost_) return wrong;
   kill();
   const std::string not_stopped = start_again();
-  return wrong + (not_stopped.empty() ? ". It was killed, and another one has stopped the head"
-                                      : ". It was killed. Another one was not started: " + not_stopped);
+  return wrong + (not_stopped.empty() ? ", and another one has stopped the head"
+                                      : ". Another one was not started: " + not_stopped);
 }
 
 std::string HeadLink::read(int milliseconds) {
@@ -99,9 +99,11 @@ std::string HeadLink::read(int milliseconds) {
   }
   if (!fault_.empty()) return fault_;
   const std::string helper = "the head's helper `" + helper_name(driver_, setup_) + "` ";
+  lost_ = ready_ && !there;
   if (!there) return helper + "ended";
-  hung_ = watch_.judge(now_is(), sent_.find(" at ") != std::string::npos);
-  return hung_.empty() ? "" : helper + "hangs: " + hung_;
+  const std::string hung = watch_.judge(now_is(), sent_.find(" at ") != std::string::npos);
+  lost_ = !hung.empty();
+  return hung.empty() ? "" : helper + "hangs: " + hung + (ready_ ? ". It was killed" : "");
 }
 
 std::string HeadLink::finish() {

@@ -49,7 +49,8 @@ class HeadLink {
   drivers::LineBuffer lines_;
   drivers::HeadAbilities abilities_;
   bool ready_ = false;
-  std::string fault_, sent_, hung_;
+  std::string fault_, sent_;
+  bool lost_ = false;  // it was ready, and hangs or is gone: its head may still turn
   double alive_ = 0;
 };
 
