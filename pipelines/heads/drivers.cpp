@@ -59,22 +59,28 @@ void only_check() {
   checks() = true;
 }
 
+namespace {
+
+int serve(drivers::HeadDevice& device) {
+  if (!checks()) return drivers::serve_head(0, 1, device, give_up_place);
+  const std::string wrong = device.check();
+  return wrong.empty() ? 0 : fail(wrong);
+}
+
+}  // namespace
+
 int serve(drivers::HeadDevice& turned, const Around& around) {
-  if (checks()) {
-    const std::string wrong = turned.check();
-    return wrong.empty() ? 0 : fail(wrong);
-  }
   drivers::InvertedHead inverted(turned, around.inverted);
   drivers::HeadDevice& device = around.inverted.any() ? inverted : turned;
   const std::string& emergency_stop = around.emergency_stop;
-  if (emergency_stop.empty()) return drivers::serve_head(0, 1, device, give_up_place);
+  if (emergency_stop.empty()) return serve(device);
 #if HAVE_GPIOD
   const std::size_t sign = emergency_stop.rfind(':');
   if (sign == 0 || sign == emergency_stop.npos || sign + 1 == emergency_stop.size())
     return fail("emergency-stop=" + emergency_stop + ": name it as CHIP:LINE, gpiochip0:17");
   drivers::EmergencyStop guarded(device, std::make_unique<drivers::GpioPort>(emergency_stop.substr(0, sign)),
                                  emergency_stop.substr(sign + 1));
-  return drivers::serve_head(0, 1, guarded, give_up_place);
+  return serve(guarded);
 #else
   return fail("emergency-stop needs libgpiod, which this build was made without");
 #endif

@@ -183,6 +183,27 @@ START_TEST(a_helper_that_cannot_open_its_head_reports_the_reason) {
 }
 END_TEST
 
+// It has moved nothing: it is killed, and no other one is started.
+START_TEST(a_helper_that_does_not_become_ready_is_killed) {
+  const std::string length = "8." + std::to_string(::getpid());
+  std::string sleeping = "sleep";
+  (sleeping += '\0') += length;
+  assert_text(
+      refusal_of("sleep " + length),
+      "the head's helper `sleep` does not answer with `ready 1 ...`: it has not become ready for 5 s. It "
+      "was killed");
+  ck_assert_int_eq(cerberus::tests::running(sleeping), 0);
+}
+END_TEST
+
+START_TEST(settings_that_the_start_refuses_are_refused_by_the_check) {
+  HeadSetup setup = setup_with("cat");
+  assert_text(HelperHead("external").check(setup), "");
+  setup.latency = 6s;
+  assert_text(HelperHead("external").check(setup), "latency must be 0 to 5 s, and is 6 s");
+}
+END_TEST
+
 START_TEST(an_emergency_stop_between_two_looks_is_seen) {
   HelperHead head("external");
   const std::string command =
@@ -343,7 +364,8 @@ int main() {
        a_stop_is_sent_as_the_stop_of_the_protocol_and_a_hold_is_not,
        a_helper_receives_a_line_well_within_its_timeout,
        a_head_that_found_its_reference_is_there_and_measured_for_a_moment, a_head_without_a_reference_says_so,
-       a_helper_that_cannot_open_its_head_reports_the_reason, an_emergency_stop_between_two_looks_is_seen,
+       a_helper_that_cannot_open_its_head_reports_the_reason, a_helper_that_does_not_become_ready_is_killed,
+       settings_that_the_start_refuses_are_refused_by_the_check, an_emergency_stop_between_two_looks_is_seen,
        a_helper_that_ended_is_reported_and_started_again,
        a_helper_that_ended_just_before_the_end_is_replaced_by_one_that_stops_the_head,
        a_helper_that_hung_up_and_has_not_ended_yet_keeps_its_reason,

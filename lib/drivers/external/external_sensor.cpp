@@ -98,7 +98,8 @@ SensorError ExternalSensor::check(const SensorSetup& setup) const {
   Options options;
   if (SensorError error = read_options(setup.options, options)) return error;
   if (setup.command.empty()) {
-    const std::string wrong = setup.device.starts_with(kSerial) ? ByteStream::check(setup.device) : "";
+    const std::string wrong =
+        setup.device.starts_with(kSerial) ? ByteStream::check(setup.device, options.baud) : "";
     return wrong.empty() ? SensorError{} : SensorError{SensorFault::settings, wrong + " (device).", ""};
   }
   const std::string wrong = command_fault(setup.command);

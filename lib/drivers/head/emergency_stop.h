@@ -18,6 +18,7 @@ class EmergencyStop final : public HeadDevice {
   EmergencyStop(HeadDevice& device, std::unique_ptr<LinePort> port, std::string line)
       : device_(device), port_(std::move(port)), line_(std::move(line)) {}
 
+  std::string check() const override { return device_.check(); }
   std::string open(const HeadSetup& setup, Time now) override;
   HeadAbilities abilities() const override { return device_.abilities(); }
   void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;

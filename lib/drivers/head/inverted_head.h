@@ -23,6 +23,7 @@ class InvertedHead final : public HeadDevice {
  public:
   InvertedHead(HeadDevice& device, Inverted inverted) : device_(device), inverted_(inverted) {}
 
+  std::string check() const override { return device_.check(); }
   std::string open(const HeadSetup& setup, Time now) override;
   HeadAbilities abilities() const override { return device_.abilities(); }
   void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;

@@ -137,13 +137,14 @@ void HelperHead::Core::send(const std::string& line) {
   lose(!client.fault().empty() ? client.fault() : "it ended");
 }
 
-// The helper hangs: it may have left its head turning. Another one is started as soon as it is gone, unless it was started
+// The helper hangs. Before it was ready it has moved nothing; else it may have left its head turning. Another one is started as soon as it is gone, unless it was started
 // within the last restart_delay.
 void HelperHead::Core::lose_hung(const std::string& why) {
   process.kill();
-  client.lose("the head's helper `" + name + "` hangs: " + why +
-              ". It was killed, and is started again to stop the head");
-  next_start = started + kParameters.restart_delay;
+  client.lose("the head's helper `" + name + "` " +
+              (open ? "hangs: " + why + ". It was killed, and is started again to stop the head"
+                    : "does not answer with `ready 1 ...`: " + why + ". It was killed"));
+  next_start = (open ? started : since_start(Clock::now())) + kParameters.restart_delay;
   answered.notify_all();
 }
 
@@ -244,6 +245,7 @@ HelperHead::~HelperHead() {
 // Asks the helper, too, which knows its options.
 std::string HelperHead::check(const HeadSetup& setup) const {
   if (std::string wrong = settings_fault(driver_, setup); !wrong.empty()) return wrong;
+  if (std::string wrong = SimulatedHead().check(setup); !wrong.empty()) return wrong;
   if (driver_ == "external") {
     const std::string wrong = command_fault(setup.command);
     return wrong.empty() ? wrong : "the command: " + wrong;
@@ -267,13 +269,13 @@ std::string HelperHead::open(const HeadSetup& setup) {
   core_ = core;
   worker_.emplace([core] { core->run(); });
   const auto over = [&] { return core->client.ready() || !core->client.fault().empty(); };
-  const bool came = core->answered.wait_for(guard, HelperWatch::Parameters{}.start, over);
+  core->answered.wait(guard, over);  // the thread gives up one that does not become ready
   core->open = core->client.ready();
-  const std::string fault = core->client.fault(), name = core->name;
+  const std::string fault = core->client.fault();
   guard.unlock();
   if (core->open) return {};
-  leave(came ? Clock::duration(kParameters.refused_patience) : 2 * HelperProcess::kPatience);
-  return came ? fault : "the head's helper `" + name + "` does not answer with `ready 1 ...`";
+  leave(kParameters.refused_patience);
+  return fault;
 }
 
 void HelperHead::close() noexcept {

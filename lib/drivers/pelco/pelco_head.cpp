@@ -28,15 +28,16 @@ int step_of(const AxisCommand& command, double fastest, double limit) {
 }  // namespace
 
 std::string PelcoHead::check() const {
-  return ByteStream::check(options_.device);
-}
-
-std::string PelcoHead::open(const HeadSetup& setup, Time now) {
   if (options_.address < 1 || options_.address > 255) return "a Pelco-D address is 1 to 255";
   if (!(options_.pan_speed > 0) || !(options_.tilt_speed > 0))
     return "pan-speed and tilt-speed must be more than 0";
   if (options_.home_preset < 0 || options_.home_preset > 255) return "a Pelco-D preset is 1 to 255";
   if (!(options_.home_time > 0 && options_.home_time <= 40)) return "home-time must be up to 40 seconds";
+  return check_device();
+}
+
+std::string PelcoHead::open(const HeadSetup& setup, Time now) {
+  if (std::string wrong = check(); !wrong.empty()) return wrong;
   return connect(setup, now);
 }
 

@@ -41,6 +41,13 @@ std::string group_of(const std::string& path) {
   return owner ? owner->gr_name : std::to_string(about.st_gid);
 }
 
+// B0: a serial port has no such rate.
+speed_t code_of(int baud) {
+  for (const auto& [rate, code] : kBauds)
+    if (rate == baud) return code;
+  return B0;
+}
+
 std::string why_not(const std::string& path) {
   const int error = errno;
   std::string text = "the serial port " + path + " cannot be opened: " + std::strerror(error);
@@ -53,13 +60,16 @@ std::string why_not(const std::string& path) {
 
 }  // namespace
 
-std::string ByteStream::check(const std::string& address) {
+std::string ByteStream::check(const std::string& address, int baud) {
   const std::size_t colon = address.find(':');
   const std::string kind = address.substr(0, colon);
   const std::string place = colon == std::string::npos ? std::string() : address.substr(colon + 1);
   if (place.empty() || (kind != "serial" && kind != "udp" && kind != "tcp"))
     return "\"" + address + "\" is no device: write serial:/dev/ttyUSB0, udp:HOST:PORT or tcp:HOST:PORT";
-  if (kind == "serial") return {};
+  if (kind == "serial")
+    return code_of(baud) == B0
+               ? "a serial port has no baud rate " + std::to_string(baud) + ": take 1200 to 115200"
+               : "";
   const std::size_t port = place.rfind(':');
   if (port == std::string::npos || port == 0 || port + 1 == place.size())
     return "\"" + address + "\" names no port: write HOST:PORT";
@@ -68,7 +78,7 @@ std::string ByteStream::check(const std::string& address) {
 
 std::string ByteStream::open(const std::string& address, int baud) {
   close();
-  if (std::string wrong = check(address); !wrong.empty()) return wrong;
+  if (std::string wrong = check(address, baud); !wrong.empty()) return wrong;
   const std::size_t colon = address.find(':');
   const std::string place = address.substr(colon + 1);
   if (address.starts_with("serial:")) return open_serial(place, baud);
@@ -76,10 +86,7 @@ std::string ByteStream::open(const std::string& address, int baud) {
 }
 
 std::string ByteStream::open_serial(const std::string& path, int baud) {
-  speed_t speed = B0;
-  for (const auto& [rate, code] : kBauds)
-    if (rate == baud) speed = code;
-  if (speed == B0) return "a serial port has no baud rate " + std::to_string(baud) + ": take 1200 to 115200";
+  const speed_t speed = code_of(baud);
   fd_ = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (fd_ < 0) return why_not(path);
   termios mode{};

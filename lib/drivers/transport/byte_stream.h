@@ -24,8 +24,8 @@ class ByteStream {
   // Takes over the connection of `other`, which is then closed.
   void take(ByteStream& other) noexcept;
 
-  // What is wrong with the text of an address; empty: nothing.
-  static std::string check(const std::string& address);
+  // What is wrong with the text of an address, or the baud rate of a serial port; empty: nothing.
+  static std::string check(const std::string& address, int baud);
   // Returns what is wrong, naming the device and what to do; empty: it is open. Blocks up to kConnectTimeout for tcp.
   // baud: of a serial port, one of 1200 to 115200.
   std::string open(const std::string& address, int baud);

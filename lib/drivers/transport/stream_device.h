@@ -32,6 +32,8 @@ class StreamDevice : public HeadDevice {
   // name: for messages, as "VISCA camera".
   StreamDevice(std::string name, std::string device, int baud)
       : name_(std::move(name)), device_(std::move(device)), baud_(baud) {}
+  // What connect() refuses of the device's address and baud rate alone.
+  std::string check_device() const { return ByteStream::check(device_, baud_); }
   // Opens the device. Blocks as ByteStream::open(); what tick() does afterwards never blocks.
   std::string connect(const HeadSetup& setup, Time now);
   // For tick(): whether the device is there. If it is not, `next` is when to call again. Calls on_connected() when the

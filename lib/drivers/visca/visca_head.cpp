@@ -70,14 +70,15 @@ void ViscaHead::on_connected(Time now) {
 }
 
 std::string ViscaHead::check() const {
-  return ByteStream::check(options_.device);
-}
-
-std::string ViscaHead::open(const HeadSetup& setup, Time now) {
   if (options_.address < 1 || options_.address > 7) return "a VISCA address is 1 to 7";
   if (options_.zoom > visca::kMostZoom)
     return "the zoom of a VISCA camera is kept at 0 to " + text::significant(visca::kMostZoom, 3).string() +
            " (lock-zoom), not at " + text::significant(options_.zoom, 4).string();
+  return check_device();
+}
+
+std::string ViscaHead::open(const HeadSetup& setup, Time now) {
+  if (std::string wrong = check(); !wrong.empty()) return wrong;
   if (std::string wrong = connect(setup, now); !wrong.empty()) return wrong;
   if (!options_.feedback) return {};
   send(visca::position_inquiry(options_.address));

@@ -43,10 +43,10 @@ class ViscaHead final : public StreamDevice {
       : StreamDevice("VISCA camera", options.device, options.baud), options_(options) {
     unanswered_orders_.reserve(kMostOrders);
   }
+  std::string check() const override;
   // Blocks to learn whether the camera answers position inquiries: up to kFirstAnswerTime, and once it answers anything
   // until it is silent for kAnswerTime. A camera that answers nothing is warned of, one whose bytes are no
   // VISCA is refused: its baud rate is another one.
-  std::string check() const override;
   std::string open(const HeadSetup& setup, Time now) override;
   HeadAbilities abilities() const override;
   void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;
