@@ -4,6 +4,7 @@
 CERBERUS_PACKAGE=1 the build under test is packed (10 s of CPU); else only the scripts are looked at."""
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -62,6 +63,12 @@ for script in ('postinst', 'prerm', 'postrm'):
     run('sh', '-n', FOLDER / script)
     assert 'set -e' in (FOLDER / script).read_text()
 run('bash', '-n', FOLDER / 'package')
+# What the robot keeps beside its recordings is gone after a purge.
+kept = {name for source in FOLDER.parent.glob('*.[ch]*')
+        for name in re.findall(r'state_folder \+ "/([^"]+)"', source.read_text(encoding='utf-8'))}
+assert {'mode', 'passwords', 'devices'} <= kept, kept
+removed = set(re.findall(r'/var/lib/cerberus/(\S+)', (FOLDER / 'postrm').read_text()))
+assert kept <= removed, kept - removed
 if not os.environ.get('CERBERUS_PACKAGE'):
     print('skipped: packing the build; CERBERUS_PACKAGE=1 does')
     sys.exit(77)
