@@ -129,15 +129,16 @@ class Writer {
 
   void network_camera() {
     const Coding with = coding(source_.codec);
+    const std::string latency = " latency=" + std::to_string(kNetworkLatency.count());
     const std::string parsed = std::string(" ! ") + with.depayloader + " ! " + with.parser;
     const bool two = !source_.record_uri.empty(), needed = recorder_ || plain_;
     if (needed && two) {
-      add("  rtspsrc name=recorded latency=200");
+      add("  rtspsrc name=recorded" + latency);
       add(parsed);
       encoded();
       set("recorded", "location", source_.record_uri);
     }
-    add("  rtspsrc name=source latency=200");
+    add("  rtspsrc name=source" + latency);
     set("source", "location", source_.uri);
     add(parsed);
     if (needed && !two) {

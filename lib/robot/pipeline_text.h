@@ -3,6 +3,7 @@
 // character of theirs is parsed.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,6 +13,9 @@
 #include "robot/settings.h"
 
 namespace cerberus::robot {
+
+// How long rtspsrc holds frames back, for the jitter of a network. Chosen: its own 2 s would make the head as late.
+constexpr std::chrono::milliseconds kNetworkLatency{200};
 
 struct Assignment {
   std::string element, property, value;

@@ -16,7 +16,6 @@ namespace cerberus::robot {
 
 namespace {
 
-constexpr std::chrono::milliseconds kHeldBack{200};  // by rtspsrc: its latency in pipeline_text.cpp
 constexpr double kParked = 1;  // degrees from zero: several steps of the coarsest motors
 
 // Time since a frame's capture, which its time stamp is, in ns; 0: it is not known.
@@ -60,7 +59,7 @@ void Camera::drop_late_frames() {
         auto& camera = *static_cast<Camera*>(data);
         const std::chrono::nanoseconds now(std::chrono::steady_clock::now().time_since_epoch());
         const std::chrono::nanoseconds held =
-            camera.settings_.source.kind == SourceKind::rtsp ? kHeldBack : std::chrono::nanoseconds(0);
+            camera.settings_.source.kind == SourceKind::rtsp ? kNetworkLatency : std::chrono::nanoseconds(0);
         const std::chrono::nanoseconds age(age_of(pad, GST_PAD_PROBE_INFO_BUFFER(info)));
         const bool drop = camera.late_.drop(age - held, now);
         camera.late_frames_ += camera.late_.report(now);
