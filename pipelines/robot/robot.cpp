@@ -250,7 +250,7 @@ void Robot::take(Settings settings) {
                settings_.state_folder.c_str());
   settings.state_folder = settings_.state_folder;
   mode_->set_schedule(settings.mode.schedule);
-  const bool new_page = page_differs(settings_, settings);
+  [[maybe_unused]] const bool new_page = page_differs(settings_, settings);
 #if HAVE_PAGE
   if (new_page) page_.reset();  // before the cameras that it shows
 #endif
