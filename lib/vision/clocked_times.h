@@ -11,6 +11,12 @@
 
 namespace cerberus::vision {
 
+// Whether the clock confirms a frame's time: it has passed by `now`, and is newer than that of the last frame.
+inline bool clock_confirms(FrameHistory::Time time, std::optional<FrameHistory::Time> last,
+                           std::optional<FrameHistory::Time> now) {
+  return now && time <= *now && (!last || time > *last);
+}
+
 class ClockedTimes {
  public:
   using Time = FrameHistory::Time;
@@ -31,10 +37,9 @@ class ClockedTimes {
     std::optional<Time> now;   // running time by the clock, where the stream may be live
   };
   Time next(const Frame& frame) {
-    const bool newer = !frame.last || frame.time > *frame.last;
-    const bool passed = newer && frame.now && frame.time <= *frame.now;
     const bool marked = std::exchange(marked_, false) || frame.marked;
-    return history_.next(frame.time, frame.nominal, marked || passed).time.value_or(frame.time);
+    const bool confirmed = clock_confirms(frame.time, frame.last, frame.now);
+    return history_.next(frame.time, frame.nominal, marked || confirmed).time.value_or(frame.time);
   }
 
  private:

@@ -88,14 +88,16 @@ FrameHistory::Step FrameHistory::pass_over(Time time, double even) {
   return step;
 }
 
-FrameHistory::Step FrameHistory::next(std::optional<Time> time, double nominal, bool marked) {
+FrameHistory::Step FrameHistory::next(std::optional<Time> time, double nominal, bool marked, bool confirmed) {
   if (!any_) usual_ = 0;  // the rhythm of a new scene is learnt anew
   if (!any_ || marked) ended_.reset();
   take_back(time);
   const double rhythm = usual_ > 0 ? usual_ : nominal;
   const double even = rhythm > 0 ? rhythm : parameters_.unknown_distance;
-  if (marked) outliers_ = 0;
-  if (!marked && is_outlier(time, even)) return pass_over(*time, even);
+  if (marked || confirmed)
+    outliers_ = 0;
+  else if (is_outlier(time, even))
+    return pass_over(*time, even);
   const std::optional<Ended> last = shown_ ? std::optional(Ended{*shown_, usual_}) : std::nullopt;
   Step step;
   step.time = time;

@@ -73,7 +73,8 @@ class FrameHistory {
 
   // Records a frame with a picture of its own. time: its running time, where it has one. nominal: frame distance of the
   // caps in seconds, 0 = variable. marked: the source says that the stream does not go on: its time is no outlier.
-  Step next(std::optional<Time> time, double nominal, bool marked = false);
+  // confirmed: so does a clock (clock_confirms()), of a live camera that was silent for long.
+  Step next(std::optional<Time> time, double nominal, bool marked = false, bool confirmed = false);
   // Returns whether frames are missing between the last one, repeated or not, and this: a leaky queue marks the gap by
   // DISCONT, as a cut is marked.
   bool misses_frames(std::optional<Time> time, double nominal) const;

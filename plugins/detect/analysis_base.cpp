@@ -18,6 +18,7 @@
 #include "shared/settings_query.hpp"
 #include "shared/single_fields.hpp"
 #include "shared/video.hpp"
+#include "vision/clocked_times.h"
 #include "vision/frame_history.h"
 #include "vision/scene_breaks.h"
 
@@ -155,8 +156,10 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   const bool marked = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) && !camera.connected &&
                       !(measures && priv.history.misses_frames(time, nominal));
   if (marked) priv.history.drop();
+  const bool confirmed =
+      frame.live && time && vision::clock_confirms(*time, priv.history.previous(), clock_now(trans));
   const vision::FrameHistory::Step step =
-      priv.history.next(time, nominal, GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT));
+      priv.history.next(time, nominal, GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT), confirmed);
   frame.running_time = clock_time(step.time);
   frame.fresh = step.fresh || camera.link == Link::cut || camera.link == Link::lost;
   frame.number = ++priv.number;

@@ -81,6 +81,7 @@
 #include "shared/complaint.hpp"
 #include "shared/properties.hpp"
 #include "shared/video.hpp"
+#include "vision/clocked_times.h"
 #include "vision/frame_history.h"
 #include "vision/image/luma/luma_stretch.h"
 #include "vision/verification/look_worker.h"
@@ -392,8 +393,11 @@ GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, G
     if (!frame) return GST_FLOW_OK;
 
     const GstClockTime stamp = cerberus::plugin::running_time_of(transform->segment, buffer);
-    const vision::FrameHistory::Step step =
-        state.history.next(cerberus::plugin::known_time(stamp), kUsualStep);
+    const auto time = cerberus::plugin::known_time(stamp);
+    const bool confirmed =
+        state.live == true && time &&
+        vision::clock_confirms(*time, state.history.previous(), cerberus::plugin::clock_now(transform));
+    const vision::FrameHistory::Step step = state.history.next(time, kUsualStep, false, confirmed);
     if (step.fresh) forget(state);
     const double seconds = step.seconds > 0 ? step.seconds : kUsualStep;
     GstClockTime now = cerberus::plugin::clock_time(step.time);

@@ -4,6 +4,8 @@
 #include "scene.h"
 #include "support.h"
 
+#include <gst/check/gsttestclock.h>
+
 namespace {
 
 using scene::Line;
@@ -117,6 +119,30 @@ GST_START_TEST(gap_buffers_pass_and_end_no_scene) {
 }
 GST_END_TEST
 
+// 12 s. Where the clock has not come so far, the time of the frame is wrong by itself, and the scene goes on.
+GST_START_TEST(a_live_camera_that_was_silent_begins_a_scene_where_the_clock_confirms_its_time) {
+  for (const bool confirmed : {true, false}) {
+    Line line("motiondetect confirm-time=0 ! identity", "");
+    gst_harness_use_testclock(line.harness);
+    gst_harness_set_live(line.harness, TRUE);
+    g_autoptr(GstTestClock) clock = gst_harness_get_testclock(line.harness);
+    gst_harness_set_src_caps_str(line.harness, scene::caps("GRAY8", scene::kWidth, scene::kHeight).c_str());
+    const World world;
+    const auto see = [&](int k, GstClockTime late) {
+      GstBuffer* in = scene::grey_buffer(world, k);
+      GST_BUFFER_PTS(in) += late;
+      if (late == 0 || confirmed) gst_test_clock_set_time(clock, GST_BUFFER_PTS(in));
+      GstBuffer* out = line.through(in);
+      const auto found = Regions(out).size();
+      gst_buffer_unref(out);
+      return found;
+    };
+    for (int k = 0; k < 30; ++k) see(k, 0);
+    fail_unless((see(30, 12 * GST_SECOND) > 0) == !confirmed);
+  }
+}
+GST_END_TEST
+
 Suite* history_suite() {
   Suite* suite = suite_create("history");
   TCase* tests = tcase_create("all");
@@ -125,6 +151,7 @@ Suite* history_suite() {
   tcase_add_checked_fixture(tests, watch_library_log, nullptr);
   tcase_add_loop_test(tests, nothing_is_published_until_three_frames_of_a_new_scene_were_seen, 0,
                       BREAKS * static_cast<int>(G_N_ELEMENTS(kLines)));
+  tcase_add_test(tests, a_live_camera_that_was_silent_begins_a_scene_where_the_clock_confirms_its_time);
   tcase_add_test(tests, gap_buffers_pass_and_end_no_scene);
   return suite;
 }

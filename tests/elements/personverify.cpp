@@ -10,6 +10,8 @@
 #include "support/onnx.h"
 #include "support/temporary_file.h"
 
+#include <gst/check/gsttestclock.h>
+
 using namespace outputs;
 
 namespace {
@@ -399,6 +401,34 @@ GST_START_TEST(a_single_time_that_is_far_off_forgets_nobody) {
 }
 GST_END_TEST
 
+// A live camera is silent for 12 s, as the clock confirms: another person may stand there.
+GST_START_TEST(after_a_long_silence_of_a_live_camera_it_begins_anew) {
+  Verifier verifier("", true);
+  gst_harness_use_testclock(verifier.h.get());
+  g_autoptr(GstTestClock) clock = gst_harness_get_testclock(verifier.h.get());
+  const auto is_person = [&](GstBuffer* in) {
+    gst_test_clock_set_time(clock, GST_BUFFER_PTS(in));
+    add(in, person_track(7, 140));
+    GstBuffer* out = verifier.through(in);
+    g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(out);
+    fail_unless(regions->len == 1);
+    const bool person = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, 0))->person;
+    gst_buffer_unref(out);
+    return person;
+  };
+  const gint64 patience = g_get_monotonic_time() + 60 * G_USEC_PER_SEC;
+  int n = 0;
+  while (!is_person(scene(n, {140}))) {
+    fail_unless(g_get_monotonic_time() < patience, "no result within a minute");
+    g_usleep(10 * 1000);
+    ++n;
+  }
+  GstBuffer* late = scene(n + 1, {140});
+  GST_BUFFER_PTS(late) += 12 * GST_SECOND;
+  fail_unless(!is_person(late));
+}
+GST_END_TEST
+
 GST_START_TEST(after_a_flush_and_with_other_caps_it_begins_anew) {
   Verifier verifier("");
   regions_after(verifier, 8, {140}, false, {person_track(7, 140)});
@@ -435,6 +465,7 @@ Suite* personverify_suite() {
   tcase_add_test(tests, a_wrong_model_is_an_error_that_names_it);
   tcase_add_test(tests, a_model_that_is_refused_by_a_later_picture_is_the_same_error);
   tcase_add_test(tests, a_single_time_that_is_far_off_forgets_nobody);
+  tcase_add_test(tests, after_a_long_silence_of_a_live_camera_it_begins_anew);
   tcase_add_test(tests, after_a_flush_and_with_other_caps_it_begins_anew);
   return suite;
 }

@@ -191,6 +191,16 @@ START_TEST(times_far_off_count_as_usual_around_repeated_and_lost_frames) {
 }
 END_TEST
 
+START_TEST(a_time_that_a_clock_confirms_is_no_outlier) {
+  for (const bool confirmed : {false, true}) {
+    FrameHistory history;
+    for (int k = 0; k < 20; ++k) history.next(k * kStep, kNominal, false, confirmed);
+    const FrameHistory::Step step = history.next(12s, kNominal, false, confirmed);
+    ck_assert(step.broken == confirmed && step.time == (confirmed ? Time(12s) : 20 * kStep));
+  }
+}
+END_TEST
+
 // Five seconds ahead may be a gap, half a second back a step of the clock: the first ends the scene, and is seen to be wrong.
 START_TEST(a_gap_that_was_none_makes_all_others_doubtful) {
   for (const Time off : {Time(5s), Time(-500ms)})
@@ -423,6 +433,7 @@ int main() {
                         single_times_that_are_far_off_end_no_scene,
                         times_far_off_count_as_usual_around_repeated_and_lost_frames,
                         times_that_stay_far_off_begin_a_scene,
+                        a_time_that_a_clock_confirms_is_no_outlier,
                         a_gap_that_was_none_makes_all_others_doubtful,
                         missing_timestamps_are_taken_as_evenly_spaced,
                         missing_frames_are_told_from_a_mark_alone,
