@@ -19,10 +19,9 @@ using namespace cerberus::bench;
 namespace {
 
 constexpr int kLeastFrames = 40;  // annotated
-constexpr double kAsked = 0.95;   // of the frames with the middle inside
-// Persons and first frames that are known not to be kept as long with some processors' vectors, which round
-// differently.
-constexpr std::pair<int, int> kNotYet[] = {{9, 4}, {11, 20}, {11, 354}};
+// Of all frames, with the middle inside. One person alone is no measure: a difference in rounding decides about a second of
+// some. Seen: .990; 1.000 with another rounding.
+constexpr double kAsked = 0.97;
 
 bool follow(Run& run, const std::string& source, const std::string& head) {
   const std::string angles = window_angles(), tilt = window_tilt();
@@ -63,12 +62,9 @@ int main(int argc, char** argv) {
       Run run(&truth, person, seen[i]);
       if (!follow(run, real->vtest, head)) return 1;
       const double n = std::max(run.annotated, 1);
-      const bool promised = std::ranges::find(kNotYet, std::pair{person, seen[i]}) == std::end(kNotYet);
-      const std::string row = "person " + std::to_string(person) + " from " + std::to_string(seen[i]);
-      const std::string judgement = judged ? asked.at_least(row, run.middle / n, kAsked, promised) : "";
-      std::printf("  %6d %5d %7d %10d %7d %14.3f %20.3f %21.3f %8zu%s\n", person, seen[i], run.waited,
+      std::printf("  %6d %5d %7d %10d %7d %14.3f %20.3f %21.3f %8zu\n", person, seen[i], run.waited,
                   run.chosen_at, run.annotated, run.middle / n, run.most / n, run.tracked / n,
-                  run.carriers.size(), judgement.c_str());
+                  run.carriers.size());
       all.annotated += run.annotated;
       all.middle += run.middle;
       all.most += run.most;
@@ -76,7 +72,9 @@ int main(int argc, char** argv) {
     }
   }
   const double n = std::max(all.annotated, 1);
-  std::printf("  %-32s %7d %14.3f %20.3f %21.3f\n", "all", all.annotated, all.middle / n, all.most / n,
+  std::printf("  %-32s %7d %14.3f %20.3f %21.3f", "all", all.annotated, all.middle / n, all.most / n,
               all.tracked / n);
-  return asked.verdict();
+  if (judged) std::printf("%s", asked.at_least("the share inside of all", all.middle / n, kAsked).c_str());
+  std::puts("");
+  return judged ? asked.verdict() : 0;
 }

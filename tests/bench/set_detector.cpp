@@ -48,9 +48,9 @@ std::vector<Found> SetDetector::find(GstSample* sample, const View& view) {
   frame.number = number_ + 1;
   if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP) ||
       detector_.repeats(*record, frame, step.repeatable)) {
-    const auto since = history_.repeat(time, nominal);
+    const auto repeated = history_.repeat(time, nominal);
     std::erase_if(tracks_, [&](const vision::Track& t) {
-      return !since || !vision::outlasts(t.state, *since, options_.tracks);
+      return !repeated || !vision::outlasts(t.state, repeated->seconds, options_.tracks);
     });
     return found();
   }
