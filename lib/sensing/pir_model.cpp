@@ -103,7 +103,7 @@ void PirModel::forget_level() {
 }
 
 void PirModel::edge(Time time, bool level) {
-  if (!started_) start(time, options_.active_low);  // the line was at rest, or its pulse is over
+  if (!started_) return start(time, level);
   advance(time);
   const bool line = level != options_.active_low;
   if (line == line_) return;

@@ -169,25 +169,6 @@ START_TEST(a_pulse_counts_from_its_least_length_on) {
 }
 END_TEST
 
-// Before the model was started, and after an outage: the line rises with that edge and has not been active for long.
-START_TEST(a_first_edge_is_a_rise_like_every_other_one) {
-  PirOptions options = kPlain;
-  options.min_pulse = 10ms;
-  PirModel model(options);
-  for (const Time at : {1s, 2s}) {
-    model.edge(at, true);
-    ck_assert_int_eq(presence(model), 0);
-    model.edge(at + 3ms, false);
-    model.poll(at + 500ms);
-    ck_assert_int_eq(presence(model), 0);
-    model.forget_level();
-  }
-  model.edge(3s, true);
-  model.poll(3100ms);
-  ck_assert(presence(model) == 1 && model.changed() == 3010ms);
-}
-END_TEST
-
 START_TEST(a_pulse_that_is_too_short_extends_no_detection) {
   PirOptions options = kPlain;
   options.min_pulse = 10ms;
@@ -541,7 +522,6 @@ int main() {
                     the_debounce_time_is_limited_to_50_ms,
                     dips_of_3_ms_on_all_lines_are_no_detection_of_any_module,
                     a_pulse_counts_from_its_least_length_on,
-                    a_first_edge_is_a_rise_like_every_other_one,
                     a_pulse_that_is_too_short_extends_no_detection,
                     an_open_collector_module_detects_while_its_line_is_low,
                     readings_are_invalid_before_the_start_and_in_warm_up,
