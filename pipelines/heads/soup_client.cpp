@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-#include "drivers/onvif/xml.h"
+#include "drivers/onvif/soap/xml.h"
 
 namespace cerberus::heads {
 

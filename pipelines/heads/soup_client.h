@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "drivers/onvif/http_client.h"
+#include "drivers/onvif/soap/http_client.h"
 
 namespace cerberus::heads {
 

@@ -7,7 +7,7 @@
 #include "drivers/onvif/address.h"
 #include "drivers/onvif/answers.h"
 #include "drivers/onvif/discovery.h"
-#include "drivers/onvif/xml.h"
+#include "drivers/onvif/soap/xml.h"
 
 using namespace cerberus::drivers::onvif;
 

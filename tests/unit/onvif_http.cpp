@@ -7,7 +7,7 @@
 #include <future>
 #include <thread>
 
-#include "drivers/onvif/xml.h"
+#include "drivers/onvif/soap/xml.h"
 #include "heads/soup_client.h"
 
 #include "support/suite.h"

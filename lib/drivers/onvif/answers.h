@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/onvif/xml.h"
+#include "drivers/onvif/soap/xml.h"
 
 namespace cerberus::drivers::onvif {
 

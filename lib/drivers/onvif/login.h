@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "drivers/onvif/soap_client.h"
+#include "drivers/onvif/soap/soap_client.h"
 
 namespace cerberus::drivers::onvif {
 

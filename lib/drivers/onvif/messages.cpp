@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-#include "drivers/onvif/xml.h"
+#include "drivers/onvif/soap/xml.h"
 #include "text/numbers.h"
 
 namespace cerberus::drivers::onvif {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "drivers/onvif/xml.h"
+#include "drivers/onvif/soap/xml.h"
 
 #include <libxml/parser.h>
 #include <libxml/tree.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "drivers/onvif/soap_client.h"
+#include "drivers/onvif/soap/soap_client.h"
 
 #include <utility>
 

@@ -9,7 +9,7 @@
 
 #include "drivers/onvif/address.h"
 #include "drivers/onvif/answers.h"
-#include "drivers/onvif/http_client.h"
+#include "drivers/onvif/soap/http_client.h"
 #include "motion/pose.h"
 
 namespace cerberus::drivers::onvif {
