@@ -267,7 +267,8 @@ def test_files():
         ended(launch_file('record', SOURCE=source, FOLDER=title, JSON=os.devnull, ENCODER=encoder(name, slices)))
         read_file(readers, f'record, {title}', recording(title), 'scene.raw', SOME)
     os.mkdir('web')
-    ended(launch_file('hls', SOURCE=f'{source} ! clocksync', FOLDER='web', SECONDS=1, KEEP=0,
+    # The playlist names the newest five files: all of this scene.
+    ended(launch_file('hls', SOURCE=f'{source} ! clocksync', FOLDER='web', SECONDS=2, KEEP=0,
                       ENCODER=encoder('x264', 4)))
     readers.ffmpeg('hls', 'drawn.raw', SOME, '-i', 'web/live.m3u8')
     playlist = pathlib.Path('web/live.m3u8').read_text('ascii').split()
