@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Heads as people own them, and what a driver is told of each.
+// Models of common heads, and the dead time that a driver is configured with for each.
 //
 //   A  goes to angles, 90 degrees a second, 60 ms, reports nothing       F  as A, reports positions (steppers, servos)
 //   B  turns at 24 speeds of an unknown table, 10 commands a second,     K  as B, calibrated
-//      80 to 250 ms of which it is told 150 (cameras: VISCA, Pelco)
+//      80 to 250 ms, configured as 150 (cameras: VISCA, Pelco)
 //   C  goes to angles in steps of .44 degrees with 1 degree of play      (cheap servos)
-//   D  as B, slower, 400 to 1200 ms of which it is told 300 (ONVIF)      L  as D, calibrated
+//   D  as B, slower, 400 to 1200 ms, configured as 300 (ONVIF)           L  as D, calibrated
 #pragma once
 
 #include "sim/pan_head.h"

@@ -215,7 +215,7 @@ TomlMistake mistake_at(std::string_view text, std::uint32_t line, std::string wh
   const std::size_t begin = there.find_first_not_of(" \t\r"), end = there.find_last_not_of(" \t\r");
   if (line == 0 || begin == there.npos) return {line, std::move(what)};
   there = there.substr(begin, end + 1 - begin);
-  // What follows a key of such a name is nobody's business.
+  // The value of a key of such a name is a secret: no message shows it.
   const std::size_t sign = there.find('=');
   const bool secret =
       std::ranges::any_of(std::array<std::string_view, 3>{"pass", "secret", "token"},

@@ -456,7 +456,7 @@ gboolean follow(CerberusPanTiltSink* sink, guint id) {
   HeadSession& session = sink->priv->session;
   const bool decided = guarded(
       sink, false, [&] { return ask_to_follow(GST_BASE_SINK_PAD(session.sink), session.head.load(), id); });
-  // What holds an earlier choice and does not answer now is told its end as well.
+  // An element that holds an earlier choice and does not answer now receives the end of the choice as well.
   if (decided) session.chosen = true;
   const gboolean done =
       manual(sink, [=](auto& head, auto now, auto& out) { return head.follow(id, now, out, decided); });

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of /proc/locks (proc(5)): "1: FLOCK  ADVISORY  WRITE 1234 08:01:5678 0 EOF". 0: nobody has.
+// Of /proc/locks (proc(5)): "1: FLOCK  ADVISORY  WRITE 1234 08:01:5678 0 EOF". 0: no process holds one.
 long locker(const struct stat& device) {
   char place[64];
   std::snprintf(place, sizeof place, "%02x:%02x:%llu", major(device.st_dev), minor(device.st_dev),
@@ -35,7 +35,7 @@ long locker(const struct stat& device) {
   return 0;
 }
 
-// Of the descriptors of those processes that may be looked at. 0: nobody, as far as is seen.
+// Reads the descriptors of the processes that this one may inspect. 0: none of these has the device open.
 long opener(const struct stat& device) {
   std::error_code wrong;
   for (const fs::directory_entry& entry : fs::directory_iterator("/proc", wrong)) {

@@ -17,10 +17,11 @@ struct LumaStretchParameters {
   // The least part of the range that is stretched. Derived: 10 K of a thermal camera with .01 K to a level, 16 levels of 10
   // bits; less is noise.
   double least = 1.0 / 64;
-  // A picture whose values are spread over less is even: the stretch begins with the first one that is not. Derived: a fifth of a thermal camera's noise.
+  // A picture whose values are spread over less is even: the stretch begins with the first one that is not. Derived: a
+  // fifth of a thermal camera's noise.
   double even = 1.0 / 4096;
-  // Left on either side of the values, in spans of them, for a person who enters and is warmer than the room. Derived: a person at 305 K in
-  // a room of 290 to 299 K lies within, or is white.
+  // Left on either side of the values, in spans of them, for objects warmer than the room. Derived: a person at 305 K in a
+  // room of 290 to 299 K lies within, or is white.
   double margin = 0.25;
   // Shares of the pixels: below and above lie single hot and dead pixels; and what may lie outside before the part moves.
   // Derived: a person fills 2 % of the picture at 5 m, and must not move it.
