@@ -249,7 +249,8 @@ std::set<std::size_t> cuts_of(const std::string& bytes, bool mp4) {
   for (std::size_t k = 80; k < bytes.size(); k += bytes.size() / 30) cuts.insert(k);
   std::size_t boxes = 0;
   for (std::size_t at = 0; mp4 && at + 8 <= bytes.size() && boxes < 12; ++boxes) {
-    const std::size_t size = GST_READ_UINT32_BE(bytes.data() + at);
+    std::size_t size = 0;
+    for (std::size_t k = 0; k < 4; ++k) size = size << 8 | static_cast<unsigned char>(bytes[at + k]);
     for (const std::size_t beside : {at + 1, at + 4, at + 8, at + 9, at + size - 1, at + size})
       if (beside < bytes.size()) cuts.insert(beside);
     if (size < 8) break;
