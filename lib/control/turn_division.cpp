@@ -33,9 +33,22 @@ std::optional<Turn> TurnDivision::head(motion::Time taken, const motion::PanTilt
     if (std::abs(rate_) > p.turning + p.most_error * fastest) base_turns_ = true;
   }
   if (rests) return std::nullopt;
-  if (!base_turns_) return seen;
+  if (!base_turns_) {
+    if (seen && std::isfinite(seen->yaw)) sum(step, reckoned.pan, seen->yaw - reckoned.pan, fastest);
+    return seen;
+  }
   both_ += step;
   return std::nullopt;
+}
+
+void TurnDivision::sum(double step, double reckoned, double difference, double fastest) {
+  const Parameters& p = parameters_;
+  const double kept = std::exp(-step / p.memory);
+  difference_ = kept * difference_ + difference;
+  reckoned_ = kept * reckoned_ + reckoned;
+  fastest_ = std::max(kept * fastest_, fastest);
+  hidden_ = hidden_ || std::abs(difference_) > p.slack + p.explained * std::abs(reckoned_) +
+                                                   (1 + p.explained) * p.settle * fastest_;
 }
 
 }  // namespace cerberus::control

@@ -8,6 +8,12 @@
 //                        `standing` (or `share` of the head's speed) for `calm` since: the picture shows nothing of the head
 //   else                 the picture's turn is the head's
 //
+// A slower base hides in the errors of the head's speeds, and its turn goes into the head's pose. It shows in the sums over
+// the frames in which the picture's turn is taken for the head's, each forgotten with the time constant `memory`:
+//
+//   D = sum of (turn of the picture - reckoned turn),  S = sum of reckoned turns,  F = largest `fastest`
+//   ambiguous            |D| > slack + explained (|S| + settle F) + settle F: more than wrong speeds and a late camera make of it
+//
 // A head that moves while the base turns cannot be told from one that does not obey: its turn is then known from its
 // commands alone. Pure; allocates nothing.
 #pragma once
@@ -32,6 +38,11 @@ class TurnDivision {
     double smoothing = .1;  // seconds; chosen: three frames
     double calm = .3;       // seconds; chosen: longer than a base takes to turn round
     double ambiguous = .5;  // seconds of head and base turning before it is reported; chosen: not for a jolt
+    // Seconds. chosen: a base at 2 degrees a second is found beside a head at 20, and turns of two minutes ago count no more.
+    double memory = 20;
+    double explained = .5;  // of the head's turn; derived: the slowest shared speed tables are wrong by half
+    // derived: less than the uncertainty at which a reference is lost (PoseEstimate). Guard of the three: unit-turn_division
+    double slack = sensing::radians(5);
     double longest_step = 1;  // seconds from frame to frame; after that the base's rate is not known
   };
 
@@ -44,13 +55,18 @@ class TurnDivision {
   std::optional<Turn> head(motion::Time taken, const motion::PanTilt& reckoned, double speed,
                            const std::optional<Turn>& seen);
   // Whether base and head have both turned, so that the picture could not tell what the head does.
-  bool ambiguous() const { return both_ >= parameters_.ambiguous; }
+  bool ambiguous() const { return both_ >= parameters_.ambiguous || hidden_; }
 
  private:
+  void sum(double step, double reckoned, double difference, double fastest);
+
   Parameters parameters_;
   std::optional<motion::Time> last_;
   double calm_ = 0, both_ = 0;             // seconds
   double rate_ = 0;                        // of the base, radians a second
+  double difference_ = 0, reckoned_ = 0;   // radians: D and S
+  double fastest_ = 0;                     // radians a second: F
+  bool hidden_ = false;                    // a base has turned in D
   double fast_now_ = 0, fast_before_ = 0;  // radians a second, since `span_` and in the span before
   motion::Time span_{};                    // begin of a span of `settle`
   bool base_turns_ = false;

@@ -72,7 +72,7 @@ struct Posting {
         ("The body below the head \"%s\" turns while the head does, the head reports no position, and "
          "nothing "
          "measures the body's turn: a gyro is missing (base-gyro, or cerberus-base events). Where the head "
-         "looks is reckoned from its commands alone meanwhile.",
+         "looks is uncertain meanwhile.",
          head),
         (nullptr));
   }

@@ -113,6 +113,54 @@ START_TEST(after_the_base_has_stood_the_picture_is_the_heads_again) {
 }
 END_TEST
 
+// A base that turns too slowly to be seen in a frame: below 5 degrees a second and 1.5 of the head's speed. The head looks
+// to and fro, and its pose takes the base's turn.
+START_TEST(a_slow_base_below_a_head_that_moves_is_ambiguous) {
+  for (const double base : {2.0, -4.0, 8.0})
+    for (const double speed : {5.0, 20.0}) {
+      Scene scene;
+      scene.base = [=](double t) { return t < 1 ? 0 : base; };
+      scene.reckoned = scene.real = [=](double t) {
+        return t < 1 ? 0 : std::fmod(t, 4) < 2 ? speed : -speed;
+      };
+      const double most = 5 + .5 * 2 * speed + .75 * speed;  // D may be so large
+      scene.run(1 + 2 * most / std::abs(base));
+      ck_assert(scene.correction.ambiguous());
+    }
+}
+END_TEST
+
+// The head holds its target while the base turns slowly: the picture stands.
+START_TEST(a_slow_base_that_the_head_turns_against_is_ambiguous) {
+  Scene scene;
+  scene.base = between(1, 9, 5);
+  scene.reckoned = scene.real = between(1, 9, -5);
+  scene.run(9);
+  ck_assert(scene.correction.ambiguous());
+}
+END_TEST
+
+// Wrong speeds, a camera that is late by .3 s, and a picture's noise of a third of a pixel of 320 are the head's,
+// which turns to and fro and rests for a second between.
+START_TEST(a_head_that_errs_on_a_base_that_stands_is_not_ambiguous) {
+  for (const double speed : {3.0, 20.0, 90.0})
+    for (const double share : {.55, 1.0, 1.45})
+      for (const double late : {0.0, .3})
+        for (const double leg : {.6, 2.0, 20.0}) {
+          Scene scene;
+          scene.reckoned = [=](double t) {
+            const double phase = std::fmod(t, 2 * leg + 2);
+            if (t < 1 || t > 61 || std::fmod(phase, leg + 1) >= leg) return 0.0;
+            return phase < leg ? speed : -speed;
+          };
+          scene.real = [&scene, share, late](double t) { return share * scene.reckoned(t - late); };
+          scene.base = [k = 0](double) mutable { return (k++ % 5 - 2) * .03 / kStep; };
+          scene.run(65);
+          ck_assert_msg(!scene.correction.ambiguous(), "%g at %g, %g s late, %g s", share, speed, late, leg);
+        }
+}
+END_TEST
+
 // With a gyro the turn that is given is the head's: it was moved by hand, as nothing else explains it.
 START_TEST(a_measured_base_leaves_the_picture_to_the_head) {
   Scene scene;
@@ -125,11 +173,14 @@ START_TEST(a_measured_base_leaves_the_picture_to_the_head) {
 END_TEST
 
 int main() {
-  return cerberus::tests::run_suite("turn_division",
-                                    {a_head_that_got_no_command_did_not_turn_whatever_the_base_does,
-                                     a_head_that_moves_while_the_base_turns_is_where_its_commands_lead,
-                                     a_head_that_turns_against_the_base_is_where_its_commands_lead,
-                                     a_base_that_stands_leaves_the_picture_to_the_head,
-                                     after_the_base_has_stood_the_picture_is_the_heads_again,
-                                     a_measured_base_leaves_the_picture_to_the_head});
+  return cerberus::tests::run_suite(
+      "turn_division",
+      {a_head_that_got_no_command_did_not_turn_whatever_the_base_does,
+       a_head_that_moves_while_the_base_turns_is_where_its_commands_lead,
+       a_head_that_turns_against_the_base_is_where_its_commands_lead,
+       a_base_that_stands_leaves_the_picture_to_the_head,
+       after_the_base_has_stood_the_picture_is_the_heads_again,
+       a_slow_base_below_a_head_that_moves_is_ambiguous, a_slow_base_that_the_head_turns_against_is_ambiguous,
+       a_head_that_errs_on_a_base_that_stands_is_not_ambiguous,
+       a_measured_base_leaves_the_picture_to_the_head});
 }
