@@ -17,6 +17,7 @@ constexpr motion::Time kAhead = std::chrono::seconds(1);
 constexpr motion::Time kWhileMoving = milliseconds(20), kAtRest = milliseconds(200);
 // The driver is queried every 20 ms; without an answer for this time it is at fault.
 constexpr motion::Time kSilence = std::chrono::seconds(1);
+constexpr char kOrderEnded[] = "the manual command ended: the head was at fault";
 constexpr char kSilent[] = "the head does not answer";
 // A decision between frames is used if its time is at most kEarly after and at most kStale before now.
 constexpr motion::Time kEarly = milliseconds(100), kStale = std::chrono::seconds(1);
@@ -251,12 +252,14 @@ void HeadController::watch_reports() {
   manual_.wait("its reports contradicted its commands: it waits for an order");
 }
 
-void HeadController::report_fault(const std::string& failure, Time head, DeferredNotifications& out) {
+// What the head did not obey is not obeyed later: it may look elsewhere by then.
+void HeadController::report_fault(const std::string& failure, bool ends_order, Time head,
+                                  DeferredNotifications& out) {
   if (failure.empty()) return;
   const bool known = std::exchange(faulty_, true);
-  // What the head did not obey is not obeyed later: it may look elsewhere by then.
-  if (!known) manual_.expire("the manual command ended: the head was at fault");
-  report(HeadState::fault, failure, head, out);
+  if (ends_order) manual_.expire(kOrderEnded);
+  const bool ended = manual_.active() && manual_.reason() == kOrderEnded;
+  report(HeadState::fault, ended ? failure + " (the manual command ended)" : failure, head, out);
   if (!known) out.add(Fault{failure});
 }
 
@@ -270,10 +273,13 @@ void HeadController::report_refusal(Time head, DeferredNotifications& out) {
 }
 
 // Updates the fault state of the head after an answer of the driver.
-void HeadController::check(const std::string& failure, Time head, DeferredNotifications& out) {
+void HeadController::check(const drivers::HeadRunner::Failure& failure, Time head,
+                           DeferredNotifications& out) {
   if (!runner_ || !runner_->healthy()) {
     if (runner_) report_refusal(head, out);
-    report_fault(failure, head, out);
+    // An order that was given after that is not executed yet, and has a failure of its own.
+    const bool of_order = failure.order != 0 && failure.order == manual_.command().order;
+    report_fault(failure.what, of_order, head, out);
     return;
   }
   if (std::exchange(faulty_, false)) report_manual(head, out);
@@ -340,13 +346,14 @@ HeadController::Answer HeadController::frame(const Frame& frame, DeferredNotific
     if (!simulated_) correct(frame, now, out);
     if (homing_ && !manual_.active()) return Answer::done;
     const HeadCommand command = decide(frame, now, out);
-    if (!manual_.active()) order(command);
+    // A head at fault obeys no order, and shows that it works again by obeying a stop.
+    if (!manual_.active() || (faulty_ && command.stop)) order(command);
     return Answer::done;
   }
 
   if (silent_ && !runner->idle()) {  // blocked since an earlier frame: this frame is skipped
     newest_ = frame.running;
-    report_fault(kSilent, latest_, out);
+    report_fault(kSilent, true, latest_, out);
     return Answer::late;
   }
   // Published poses stay valid: the command takes effect only after them.
@@ -377,7 +384,7 @@ HeadController::Answer HeadController::frame(const Frame& frame, DeferredNotific
   if (frame.seen) watchdog_.feed(now);
   silent_ = answer == Answer::late;
   if (silent_) {
-    report_fault(kSilent, now, out);
+    report_fault(kSilent, true, now, out);
     return answer;
   }
   check(runner->failure(), now, out);
@@ -425,12 +432,16 @@ HeadController::Time HeadController::tick(Time at, DeferredNotifications& out) {
   guard.lock();
   if (answer == Answer::late) {
     if (late_since_ == motion::kNever) late_since_ = now;
-    if (now - late_since_ > kSilence) report_fault(kSilent, now, out);
+    if (now - late_since_ > kSilence) {
+      const bool waits = manual_.active() && manual_.command().order != 0;
+      report_fault(kSilent, true, now, out);
+      if (waits) order(manual_at(now));  // in place of the order that the driver has not taken yet
+    }
     return at + kWhileMoving;
   }
   if (answer != Answer::interrupted) {
-    const std::string failure = runner->failure();
-    homing_ = homing_ && failure.empty();  // a head that cannot find its reference goes on without it
+    const drivers::HeadRunner::Failure failure = runner->failure();
+    homing_ = homing_ && failure.what.empty();  // a head that cannot find its reference goes on without it
     check(failure, now, out);
   }
   watch_emergency(now, out);
@@ -463,7 +474,8 @@ void HeadController::halt(const char* reason, std::optional<Time> at, drivers::H
   remember(poses);
   for (const Pose& pose : poses)
     out.add(running(pose));  // up to its rest: in PAUSED the driver is not queried again
-  if (answer == Answer::late) report_fault("the head does not answer: it may not have stopped", now, out);
+  if (answer == Answer::late)
+    report_fault("the head does not answer: it may not have stopped", true, now, out);
   if (!faulty_) report(HeadState::stopped, reason, now, out);
 }
 
@@ -511,10 +523,12 @@ void HeadController::apply_manual(std::optional<Time> at, DeferredNotifications&
   law_.reset();
   const Time now = at && clock_driven_ ? head_time(*at) : latest_;
   homing_ = false;
+  // A driver that does not answer would take the order whenever it answers again.
+  if (silent_ || now - late_since_ > kSilence) manual_.expire(kOrderEnded);
   if (clock_driven_ && !halted_) order(manual_at(now));
   if (manual_.authority() == Authority::emergency_stop)
     report_manual(now, out);
-  else
+  else if (!faulty_)
     report(HeadState::manual, manual_.reason(), now, out);
 }
 

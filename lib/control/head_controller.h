@@ -106,9 +106,10 @@ class HeadController {
   void publish(const std::vector<motion::Pose>& poses, Time until, DeferredNotifications& out);
   void report(HeadState state, std::string reason, Time head, DeferredNotifications& out);
   void report_manual(Time head, DeferredNotifications& out);
-  void report_fault(const std::string& failure, Time head, DeferredNotifications& out);
+  // ends_order: the order by hand that is in force ends with the fault.
+  void report_fault(const std::string& failure, bool ends_order, Time head, DeferredNotifications& out);
   void report_refusal(Time head, DeferredNotifications& out);
-  void check(const std::string& failure, Time head, DeferredNotifications& out);
+  void check(const drivers::HeadRunner::Failure& failure, Time head, DeferredNotifications& out);
   // A manual order that was not repeated in time becomes a stop.
   void end_expired_order(Time now, DeferredNotifications& out);
   drivers::HeadCommand decide(const Frame& frame, Time now, DeferredNotifications& out);

@@ -22,7 +22,8 @@ bool ManualOverride::move(double pan, double tilt, bool relative, const motion::
   set(inside ? "manual command: move" : "manual command: move, as far as the limit",
       {.time = {},
        .pan = {AxisCommand::Kind::position, limits.pan.clamp(pan), limits.pan.speed},
-       .tilt = {AxisCommand::Kind::position, limits.tilt.clamp(tilt), limits.tilt.speed}});
+       .tilt = {AxisCommand::Kind::position, limits.tilt.clamp(tilt), limits.tilt.speed},
+       .order = ++orders_});
   return true;
 }
 
@@ -31,7 +32,7 @@ bool ManualOverride::turn(double pan, double tilt) {
   const auto axis = [](double speed) {
     return speed == 0 ? AxisCommand{} : AxisCommand{AxisCommand::Kind::velocity, speed, 0};
   };
-  set("manual command: turn", {.time = {}, .pan = axis(pan), .tilt = axis(tilt)});
+  set("manual command: turn", {.time = {}, .pan = axis(pan), .tilt = axis(tilt), .order = ++orders_});
   return true;
 }
 

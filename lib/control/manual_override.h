@@ -20,7 +20,7 @@ class ManualOverride {
   Authority authority() const {
     return emergency_ ? Authority::emergency_stop : active_ ? Authority::manual : Authority::automatic;
   }
-  // The two axes as commanded; its time is not set.
+  // The two axes as commanded; its time is not set. A move and a turn have an order's number each.
   const drivers::HeadCommand& command() const { return command_; }
   const char* reason() const { return reason_; }  // for a user
 
@@ -58,6 +58,7 @@ class ManualOverride {
   bool active_ = false, emergency_ = false;
   motion::Time deadline_ = motion::kNever;
   drivers::HeadCommand command_;
+  unsigned orders_ = 0;
   const char* reason_ = "";
 };
 

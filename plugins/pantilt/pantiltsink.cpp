@@ -62,7 +62,9 @@
  * Action signals override the decisions until `auto` gives them back: `move-to` and `move-by` (pan, tilt in degrees;
  * false if the head is not there, the stream is over, or a number is none), `turn` (degrees a second; a stop after 500 ms
  * unless it is repeated), `stop`, `home`, `auto`. With `manual-timeout`, for orders that come from afar, a move that is
- * not repeated becomes a stop as well. `stop` holds until the next order or `auto`.
+ * not repeated becomes a stop as well. `stop` holds until the next order or `auto`. A move or turn that is in force when
+ * the head begins to fail, or that it does not obey during a fault, ends: the reason of the state `fault` says so, and
+ * the head that works again stands until the next signal or `auto`.
  *
  * One controller at a time has the head: the emergency stop of its driver (state `stopped`), then the signals, then the
  * decisions. Pressed, it switches the motors off and every signal but `stop` is refused; released, the head stays until

@@ -186,7 +186,7 @@ GST_START_TEST(an_order_that_goes_on_says_so) {
 }
 GST_END_TEST
 
-GST_START_TEST(after_a_fault_an_order_that_goes_on_says_so) {
+GST_START_TEST(after_a_fault_the_state_is_that_of_the_order_before_it) {
   Pipe gate;
   Rig rig("driver=scripted script=\"state wait " + gate.reader() + "\"", Source::live);
   fail_unless(rig.call("move-to", 90, 0));
@@ -197,6 +197,26 @@ GST_START_TEST(after_a_fault_an_order_that_goes_on_says_so) {
   gate.close_writer();
   while ((states = rig.states()).empty()) rig.crank();
   fail_unless_equals_string(states.c_str(), "manual");
+}
+GST_END_TEST
+
+// The driver would take the order as soon as it returns from the call in which it hangs.
+GST_START_TEST(an_order_to_a_head_that_does_not_answer_moves_nothing_later) {
+  Pipe gate, record;
+  Rig rig("driver=scripted script=\"record " + record.writer() + "; state wait " + gate.reader() + "\"",
+          Source::live);
+  std::string states;
+  while ((states = rig.states()).empty()) rig.crank();
+  fail_unless_equals_string(states.c_str(), "fault");
+  fail_unless(rig.call("move-to", 90, 0));
+  rig.crank();
+  gate.close_writer();
+  while ((states = rig.states()).find("manual") == std::string::npos) rig.crank();
+  for (int k = 0; k < 10; ++k) rig.crank();
+  rig.call("stop");
+  std::string line;
+  do fail_if((line = record.line()).find("position") != std::string::npos, "%s", line.c_str());
+  while (!line.starts_with("command"));
 }
 GST_END_TEST
 
@@ -443,7 +463,8 @@ Suite* pantiltsink_live_suite() {
   tcase_add_test(tests, when_frames_stay_away_an_order_is_over);
   tcase_add_test(tests, in_pause_a_head_with_a_clock_stands_still);
   tcase_add_test(tests, an_order_that_goes_on_says_so);
-  tcase_add_test(tests, after_a_fault_an_order_that_goes_on_says_so);
+  tcase_add_test(tests, after_a_fault_the_state_is_that_of_the_order_before_it);
+  tcase_add_test(tests, an_order_to_a_head_that_does_not_answer_moves_nothing_later);
   tcase_add_test(tests, an_order_does_not_survive_the_end_of_the_stream);
   tcase_add_test(tests, a_driver_that_fails_warns_once_and_the_video_goes_on);
   tcase_add_test(tests, what_cannot_be_is_refused_with_its_name);

@@ -8,6 +8,8 @@
 #include <check.h>
 
 #include <cmath>
+#include <functional>
+#include <future>
 #include <limits>
 
 #include "support/suite.h"
@@ -40,8 +42,9 @@ struct Record {
   std::vector<Time> stops;
   std::string failure;  // returned by command()
   bool emergency = false;
-  bool parted = false;  // its reports have parted from its commands
-  std::string refusal;  // returned by open()
+  bool parted = false;                         // its reports have parted from its commands
+  std::string refusal;                         // returned by open()
+  std::function<void()> in_command, in_state;  // called by these, if set
   int homes = 0;
   bool simulated = true;
 };
@@ -58,6 +61,7 @@ class RecordedHead : public drivers::Head {
     head_->stop(now);
   }
   std::string command(const HeadCommand& command) override {
+    if (record_->in_command) record_->in_command();
     record_->commands.push_back(command);
     return record_->failure.empty() ? head_->command(command) : record_->failure;
   }
@@ -65,7 +69,10 @@ class RecordedHead : public drivers::Head {
     record_->limits.emplace_back(now, limits);
     return head_->limit(now, limits);
   }
-  std::string state(Time time, Pose& pose) override { return head_->state(time, pose); }
+  std::string state(Time time, Pose& pose) override {
+    if (record_->in_state) record_->in_state();
+    return head_->state(time, pose);
+  }
   bool emergency() override { return record_->emergency; }
   bool parted() override { return std::exchange(record_->parted, false); }
   std::string home(Time) override {
@@ -866,7 +873,7 @@ START_TEST(a_manual_command_ends_with_a_fault) {
   rig.controller.move(radians(30), 0, false, {}, rig.out);
   rig.record->failure = "no power";
   rig.controller.frame(Rig::with(0s, Action::hold), rig.out);
-  rig.assert_status(HeadState::fault, "no power");
+  rig.assert_status(HeadState::fault, "no power (the manual command ended)");
   rig.record->failure.clear();
   rig.process(Rig::with(40ms, Action::turn_left));
   rig.assert_status(HeadState::manual, "the manual command ended: the head was at fault");
@@ -875,6 +882,144 @@ START_TEST(a_manual_command_ends_with_a_fault) {
   rig.process(Rig::with(80ms, Action::hold));
   rig.assert_status(HeadState::manual, "manual command: move");
   ck_assert_double_eq_tol(degrees(rig.command().pan.value), 20, 1e-9);
+}
+END_TEST
+
+// The fault is known before the order is given.
+START_TEST(an_order_that_is_given_during_a_fault_ends_with_it) {
+  for (const bool clock_driven : {false, true})
+    for (const bool turn : {false, true}) {
+      Options options;
+      options.clock_driven = clock_driven;
+      Rig rig(options);
+      Time now{};
+      // A frame, and a tick where the clock drives the head.
+      const auto pass = [&] {
+        rig.controller.frame(Rig::with(now, Action::turn_left), rig.out);
+        if (clock_driven) rig.controller.tick(now + 20ms, rig.out);
+        now += 40ms;
+      };
+      rig.record->failure = "no power";
+      pass();
+      rig.assert_status(HeadState::fault, "no power");
+      const auto order = [&](double angle) {
+        return turn ? rig.controller.turn(radians(angle), 0, now, rig.out)
+                    : rig.controller.move(radians(angle), 0, false, now, rig.out);
+      };
+      ck_assert(order(30));
+      pass();
+      rig.assert_status(HeadState::fault, "no power (the manual command ended)");
+      ck_assert(order(25));  // each of them
+      pass();
+      rig.record->failure.clear();
+      const std::size_t before = rig.record->commands.size();
+      pass();
+      rig.assert_status(HeadState::manual, "the manual command ended: the head was at fault");
+      pass();
+      rig.controller.halt("paused", now, 10s, rig.out);
+      rig.controller.resume(now, rig.out);
+      pass();
+      ck_assert_uint_gt(rig.record->commands.size(), before);
+      for (std::size_t k = before; k < rig.record->commands.size(); ++k)
+        ck_assert(rig.record->commands[k].stop && holds(rig.record->commands[k].pan));
+      ck_assert_uint_eq(rig.warnings.size(), 1);
+      // The next one is obeyed.
+      ck_assert(order(20));
+      pass();
+      rig.assert_status(HeadState::manual, turn ? "manual command: turn" : "manual command: move");
+      ck_assert_double_eq_tol(degrees(rig.command().pan.value), 20, 1e-9);
+    }
+}
+END_TEST
+
+// It comes while the driver answers a tick, and is not executed when the tick takes the failure of the command before it.
+START_TEST(an_order_outlives_the_failure_of_an_older_command) {
+  Options options;
+  options.clock_driven = options.blocks = true;
+  Rig rig(options);
+  rig.record->failure = "no power";
+  rig.controller.frame(Rig::with(0s, Action::turn_left), rig.out);
+  Time now = 20ms;
+  for (; rig.statuses.empty() || rig.statuses.back().state != HeadState::fault; now += 20ms) {
+    rig.controller.tick(now, rig.out);
+    rig.collect();
+  }
+  std::promise<void> checked;
+  DeferredNotifications other{rig.queue, rig.name};
+  bool once = true;
+  rig.record->in_state = [&, here = now] {
+    if (!std::exchange(once, false)) return;
+    rig.record->in_command = [&] { checked.get_future().wait(); };
+    ck_assert(rig.controller.move(radians(30), 0, false, here, other));
+  };
+  rig.controller.frame(Rig::with(now, Action::turn_left), rig.out);
+  rig.controller.tick(now, rig.out);
+  rig.assert_status(HeadState::fault, "no power");
+  rig.record->failure.clear();
+  checked.set_value();
+  for (; rig.statuses.back().state == HeadState::fault; now += 20ms) {
+    rig.controller.tick(now, rig.out);
+    rig.collect();
+  }
+  rig.assert_status(HeadState::manual, "manual command: move");
+  rig.controller.close(10s);
+  assert_goes(rig.command().pan, 30, 90);
+}
+END_TEST
+
+// An order that was given before, or while nothing comes back, and was not taken by the driver.
+START_TEST(an_order_to_a_driver_that_does_not_answer_moves_nothing_later) {
+  for (const bool before : {true, false}) {
+    Options options;
+    options.clock_driven = options.blocks = true;
+    Rig rig(options);
+    std::promise<void> asked, answers;
+    const std::shared_future<void> answer = answers.get_future().share();
+    rig.record->in_state = [&, once = true]() mutable {
+      if (std::exchange(once, false)) asked.set_value();
+      answer.wait();
+    };
+    rig.controller.tick(0s, rig.out);
+    asked.get_future().wait();
+    const auto order = [&](Time now) { ck_assert(rig.controller.move(radians(30), 0, false, now, rig.out)); };
+    if (before) order(10ms);
+    for (Time now = 20ms; now < 1100ms; now += 300ms) rig.controller.tick(now, rig.out);
+    rig.controller.tick(1100ms, rig.out);
+    rig.assert_status(HeadState::fault, before ? "the head does not answer (the manual command ended)"
+                                               : "the head does not answer");
+    if (!before) order(1110ms);
+    answers.set_value();
+    for (Time now = 1120ms; rig.statuses.back().state == HeadState::fault; now += 20ms) {
+      rig.controller.tick(now, rig.out);
+      rig.collect();
+    }
+    rig.assert_status(HeadState::manual, "the manual command ended: the head was at fault");
+    rig.controller.close(10s);
+    for (const HeadCommand& command : rig.record->commands) ck_assert(holds(command.pan));
+  }
+}
+END_TEST
+
+// A head whose faults end with the next command that it obeys.
+START_TEST(an_order_that_ends_the_fault_is_obeyed) {
+  for (const bool clock_driven : {false, true}) {
+    Options options;
+    options.clock_driven = clock_driven;
+    Rig rig(options);
+    rig.record->failure = "no power";
+    rig.controller.frame(Rig::with(0s, Action::turn_left), rig.out);
+    if (clock_driven) rig.controller.tick(20ms, rig.out);
+    rig.assert_status(HeadState::fault, "no power");
+    rig.record->failure.clear();
+    ck_assert(rig.controller.move(radians(30), 0, false, 30ms, rig.out));
+    rig.assert_status(HeadState::fault, "no power");  // until it has
+    for (const Time now : {40ms, 80ms}) {
+      rig.controller.frame(Rig::with(now, Action::turn_left), rig.out);
+      if (clock_driven) rig.controller.tick(now + 20ms, rig.out);
+    }
+    rig.assert_status(HeadState::manual, "manual command: move");
+    assert_goes(rig.command().pan, 30, 90);
+  }
 }
 END_TEST
 
@@ -991,6 +1136,10 @@ int main() {
                            the_emergency_stop_takes_the_head_from_everybody_until_a_new_order,
                            after_reports_that_contradict_the_commands_only_an_order_moves_the_head,
                            a_manual_command_ends_with_a_fault,
+                           an_order_that_is_given_during_a_fault_ends_with_it,
+                           an_order_outlives_the_failure_of_an_older_command,
+                           an_order_to_a_driver_that_does_not_answer_moves_nothing_later,
+                           an_order_that_ends_the_fault_is_obeyed,
                            a_reference_is_lost_only_where_the_picture_is_measured,
                            a_head_that_cannot_be_opened_is_an_error_and_reported_once,
                            an_interrupted_frame_is_passed_again});

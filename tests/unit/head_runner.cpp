@@ -78,8 +78,8 @@ START_TEST(a_failure_is_reported_once_and_cleared_by_the_next_success) {
   ck_assert(runner->healthy());
   ck_assert(runner->ask(go(1s, 1), 1s, 1s, poses, 60s) == Answer::failed);
   ck_assert(!runner->healthy());
-  assert_text(runner->failure(), "no power");
-  assert_text(runner->failure(), "");
+  assert_text(runner->failure().what, "no power");
+  assert_text(runner->failure().what, "");
   // A question alone is answered, and heals nothing.
   ck_assert(runner->ask({}, 1s, 1s, poses, 60s) == Answer::done);
   ck_assert(!runner->healthy());
@@ -114,13 +114,44 @@ START_TEST(a_fault_at_rest_is_found_by_a_question_which_is_answered_all_the_same
   ck_assert(runner.ask({}, 1s, 1s, poses, 60s) == Answer::failed);
   ck_assert_uint_eq(poses.size(), 1);
   ck_assert(!runner.healthy());
-  assert_text(runner.failure(), "it was unplugged");
+  assert_text(runner.failure().what, "it was unplugged");
   device.why.clear();
   ck_assert(runner.ask({}, 2s, 2s, poses, 60s) == Answer::done);
   ck_assert(runner.healthy());
   device.blind = "it has no position";  // and no fault of its own
   ck_assert(runner.ask({}, 3s, 3s, poses, 60s) == Answer::failed);
-  assert_text(runner.failure(), "it has no position");
+  assert_text(runner.failure().what, "it has no position");
+}
+END_TEST
+
+// Of a command that was replaced before its turn there is none.
+START_TEST(a_failure_names_the_order_that_was_executed_last) {
+  Pipe gate, record;
+  const auto runner = runner_with("record " + record.writer() + "; command 1 wait " + gate.reader() +
+                                  "; command 2 fail no power; state 2 fail it is dark");
+  const auto order = [](Time time, unsigned number) {
+    HeadCommand command = go(time, 1);
+    command.order = number;
+    return command;
+  };
+  record.line();
+  runner->command(order(1s, 7));
+  record.line();
+  runner->command(order(2s, 8));  // waits
+  runner->command(order(3s, 9));
+  ck_assert_uint_eq(runner->failure().order, 0);
+  gate.close_writer();
+  std::vector<Pose> poses;
+  runner->ask({}, 3s, 3s, poses, 60s);
+  HeadRunner::Failure failure = runner->failure();
+  assert_text(failure.what, "no power");
+  ck_assert_uint_eq(failure.order, 9);
+  ck_assert(runner->ask({}, 4s, 4s, poses, 60s) == Answer::failed);
+  failure = runner->failure();
+  assert_text(failure.what, "it is dark");
+  ck_assert_uint_eq(failure.order, 9);
+  ck_assert(runner->ask(go(5s, 1), 5s, 5s, poses, 60s) == Answer::failed);
+  ck_assert_uint_eq(runner->failure().order, 0);
 }
 END_TEST
 
@@ -216,7 +247,7 @@ START_TEST(a_head_that_never_blocks_is_nobodys_but_the_callers) {
   ck_assert_uint_eq(notified.size(), 4);
   for (const std::thread::id id : notified) ck_assert(id == std::this_thread::get_id());
   ck_assert(runner.ask(go(1s, 1), 2s, 2s, poses, 0s) == Answer::failed);  // a stale one
-  ck_assert(!runner.failure().empty());
+  ck_assert(!runner.failure().what.empty());
 }
 END_TEST
 
@@ -366,7 +397,7 @@ START_TEST(a_head_that_refuses_limits_is_stopped_and_obeys_nothing_until_it_take
   assert_text(record.line(), "stop 1000000000");
   std::vector<Pose> poses;
   ck_assert(runner->ask(go(2s, 1), 2s, 2s, poses, 60s) == Answer::failed);
-  assert_text(runner->failure(), "no memory");
+  assert_text(runner->failure().what, "no memory");
   ck_assert(!runner->healthy());
   ck_assert(record.line().starts_with("limit 1000000000 "));
   assert_text(record.line(), "stop 1000000000");
@@ -484,18 +515,18 @@ START_TEST(a_driver_that_does_not_open_returns_the_reason) {
   HeadSetup setup;
   setup.script = "open fail no such device";
   ck_assert(runner.open(setup, 60s) == Answer::failed);
-  assert_text(runner.failure(), "no such device");
+  assert_text(runner.failure().what, "no such device");
   assert_text(runner.refusal(), "no such device");
   assert_text(runner.refusal(), "");  // reported before
   // Nothing else fails of anything else.
   std::vector<Pose> poses;
   ck_assert(runner.ask(HeadCommand{}, {}, {}, poses, 60s) == Answer::failed);
-  assert_text(runner.failure(), "no such device");
+  assert_text(runner.failure().what, "no such device");
   for (const char* nonsense :
        {"opn fail x", "record", "record x", "command", "command 3", "command wait", "stop jump 3"}) {
     setup.script = nonsense;
     ck_assert(runner.open(setup, 60s) == Answer::failed);
-    ck_assert(runner.failure().find("script: ") == 0);
+    ck_assert(runner.failure().what.find("script: ") == 0);
   }
 }
 END_TEST
@@ -515,6 +546,7 @@ int main() {
       {questions_are_answered_with_all_pieces_of_the_way,
        a_failure_is_reported_once_and_cleared_by_the_next_success,
        a_fault_at_rest_is_found_by_a_question_which_is_answered_all_the_same,
+       a_failure_names_the_order_that_was_executed_last,
        a_head_that_fails_is_stopped,
        a_caller_without_patience_is_not_blocked,
        interrupt_wakes_a_waiting_caller,

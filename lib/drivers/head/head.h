@@ -42,6 +42,7 @@ struct HeadCommand {
   motion::AxisCommand pan, tilt;
   // Both axes hold, and the device also ends what it does without a command, as homing. A plain hold does not end that.
   bool stop = false;
+  unsigned order = 0;  // number of the order by hand that it is, which a failure names; 0: none
 };
 
 class Head {

@@ -51,7 +51,8 @@ struct HeadRunner::Core {
   unsigned long asked = 0, answered = 0;  // tickets
   unsigned interrupts = 0;
   bool ended = false, obeys = true, speaks = true;
-  std::string failure;           // not reported yet
+  Failure failure;               // not reported yet
+  unsigned order = 0;            // of the last command
   std::string unopened;          // used like the head: why it could not be opened
   std::string refusal;           // the same, not reported yet
   bool emergency = false;        // at the last request
@@ -138,8 +139,9 @@ void HeadRunner::Core::serve(std::unique_lock<std::mutex>& guard) {
     parted = true;
     todo.command.reset();
   }
+  if (batch.command) order = batch.command->order;
   failed = !wrong.empty();
-  if (failed) failure = wrong;
+  if (failed) failure = {wrong, order};
   const bool failed_to_open = failed && batch.open;
   if (failed_to_open) refusal = unopened;
   if (batch.open || batch.limiting || batch.command || batch.home)
@@ -271,7 +273,7 @@ void HeadRunner::interrupt(bool on) {
   core_->answer.notify_all();
 }
 
-std::string HeadRunner::failure() {
+HeadRunner::Failure HeadRunner::failure() {
   const std::lock_guard guard(core_->lock);
   return std::exchange(core_->failure, {});
 }

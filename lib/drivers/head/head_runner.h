@@ -27,6 +27,10 @@ class HeadRunner {
     late,         // no answer yet; the request continues
     interrupted,  // interrupt(true) was called
   };
+  struct Failure {
+    std::string what;    // the driver's error; empty: none
+    unsigned order = 0;  // of the last command that was executed until then (HeadCommand::order)
+  };
   // moved: called when the head was opened, stopped or commanded; refused: called when it cannot be opened, even if
   // that is found late. Both are called on the worker's thread if there is one, and must not block nor call the runner.
   // A head whose earlier lease is being returned is opened as soon as it is; refused after 10 s. A runner
@@ -56,8 +60,8 @@ class HeadRunner {
 
   // true: waiting and later calls of ask() return at once, until interrupt(false) was called as often.
   void interrupt(bool on);
-  // Returns the driver's error since the last call; empty: none.
-  std::string failure();
+  // Returns the driver's last error since the last call.
+  Failure failure();
   // Returns, once, why the head could not be opened; all other requests then fail for this reason. Empty: it is open,
   // or being opened.
   std::string refusal();
