@@ -149,9 +149,11 @@ inline constexpr std::array kOwnOfTracks{
              "flicker and answers later; 0 = every region is one in the frame in which it is first seen"),
     property("coast-time", &DetectSettings::coast_time,
              "Nanoseconds for which a moving object is carried on without being seen; 0 = it ends at once"),
-    property("hold-stopped", &DetectSettings::hold_stopped,
-             "Nanoseconds for which an object that stopped moving is held where it stands (with "
-             "fuzzythreshold's memory, which tells that it is still there); 0 = it ends at once"),
+    property(
+        "hold-stopped", &DetectSettings::hold_stopped,
+        "Nanoseconds for which an object that stopped moving is held where it stands (with "
+        "fuzzythreshold's memory, which tells that it is still there), and for which one that walks out of "
+        "the picture of a head that stands keeps its identity; 0 = it ends at once"),
     property("away-time", &DetectSettings::away_time,
              "Nanoseconds for which a moving object that the camera has turned away from keeps its identity; "
              "0 = it ends at once"),

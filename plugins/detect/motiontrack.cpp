@@ -6,7 +6,8 @@
  * seen, coasted (carried on without evidence) or stopped (stands where it was last seen). The regions on the frame are
  * replaced by the tracked ones; the frame goes through untouched. A person who leaves the picture because the camera
  * turns keeps the identity for `away-time`: place and motion are kept by angle, from the head's pose on the frames
- * where `horizontal-fov` is known, else from the camera's own motion. People who meet are distinguished by how bright
+ * where `horizontal-fov` is known, else from the camera's own motion. One who walks out of the picture of a head that
+ * stands, at its limit for one, keeps it for `hold-stopped`, and is expected back at that side. People who meet are distinguished by how bright
  * coat and legs are, where the planes of the stages reach this element (nothing converts or scales the picture between
  * `motionregions` and it). Without `motionregions` upstream the regions are found here with the defaults. With
  * `horizontal-fov` each object also gets a bearing (degrees, positive to the right of the camera's axis, wherever the

@@ -55,8 +55,9 @@ struct World {
   double start = 30, speed = 3;  // left edge at frame 0, pixels a frame
   double pan = 0;                // pixels a frame by which the camera turns to the right
   int width = kWidth, height = kHeight;
+  std::function<double(int)> path = {};  // left edge at a frame, in place of start and speed
 
-  double figure_left(int frame) const { return start + speed * frame - pan * frame; }
+  double figure_left(int frame) const { return (path ? path(frame) : start + speed * frame) - pan * frame; }
   double figure_top() const { return height * 0.4; }
   bool on_figure(int x, int y, int frame) const {
     const double left = figure_left(frame);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // virtualptz with the head behind it that turns it: a person walks before a wall, 320 x 240 pixels; the window of 160
 // x 120 reaches 16.1 degrees (80 pixels) to each side.
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <future>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -86,6 +88,102 @@ GST_START_TEST(a_person_who_leaves_the_window_has_the_same_identity_on_return) {
     for (int frame = kAway; frame < kFrames; ++frame) away += all[frame].place < -scene::kFigureWidth / 2.0;
     fail_unless(away > 20, "away for %d frames only", away);
     fail_unless_equals_int(identity(all.back()), identity(all[kAway]));
+  }
+}
+GST_END_TEST
+
+// ---- a person who walks past the head's limit
+
+// The head follows as far as 8 degrees: 40 pixels, so that its window ends at 280. Walking pace: 2 pixels a frame, .7 of
+// the figure's height a second.
+const std::string kNarrow = "pan-min=-8 pan-max=8";
+constexpr double kPace = 2, kOutside = 300;
+
+// Walks along straight lines between left edges, and stands at one for so many frames where two are equal.
+class Path {
+ public:
+  explicit Path(double from) : at_{from} {}
+  Path& to(double end) {
+    for (const double step = end < at_.back() ? -kPace : kPace; std::abs(end - at_.back()) > kPace / 2;)
+      at_.push_back(at_.back() + step);
+    return *this;
+  }
+  Path& wait(int frames) {
+    at_.insert(at_.end(), static_cast<std::size_t>(frames), at_.back());
+    return *this;
+  }
+  // Elsewhere in the next frame.
+  Path& appear(double place) {
+    at_.push_back(place);
+    return *this;
+  }
+  int frames() const { return static_cast<int>(at_.size()); }
+  double left(int frame) const { return at_[static_cast<std::size_t>(std::min(frame, frames() - 1))]; }
+
+ private:
+  std::vector<double> at_;
+};
+
+// The identities of the frames in which all of the figure is in the window and one region is, visit by visit.
+struct Visit {
+  int frames = 0, found = 0;
+  std::set<guint> identities;
+};
+
+std::vector<Visit> visits(const Path& path, const std::string& detect) {
+  constexpr double kFocal = 277.128, kMargin = scene::kFigureWidth;
+  scene::World world;
+  world.path = [path](int frame) { return path.left(frame); };
+  std::vector<Visit> all;
+  bool inside = false;
+  int frame = 0;
+  loop::Pipeline pipeline(line(path.frames(), detect, kNarrow), world);
+  auto see = [&](GstBuffer* buffer) {
+    const CerberusPose* pose = cerberus_buffer_peek_pose(buffer);
+    const double left = path.left(frame++) - 80 - kFocal * std::tan(pose->pan * M_PI / 180);
+    const bool whole = left > kMargin && left + scene::kFigureWidth < 160 - kMargin;
+    if (left + scene::kFigureWidth < 0 || left > 160) inside = false;
+    if (!whole) return;
+    if (!inside) all.emplace_back();
+    inside = true;
+    ++all.back().frames;
+    const scene::Regions regions(buffer);
+    for (guint i = 0; i < regions.size(); ++i)
+      if (regions[i].tracked) all.back().identities.insert(regions[i].id);
+    all.back().found += regions.size() == 1;
+  };
+  pipeline.watch("head", see);
+  pipeline.play();
+  pipeline.wait_for_end();
+  fail_unless_equals_int(frame, path.frames());
+  for (const Visit& visit : all)
+    fail_unless(visit.found > visit.frames / 2, "found in %d of %d frames", visit.found, visit.frames);
+  return all;
+}
+
+GST_START_TEST(a_person_who_returns_to_the_head_s_limit_has_the_same_identity) {
+  for (const char* detect : {"", "horizontal-fov=32.2"}) {
+    Path path(44);
+    path.to(kOutside);
+    for (const int seconds : {2, 5, 10}) path.wait(25 * seconds).to(180).to(kOutside);
+    const std::vector<Visit> all = visits(path, detect);
+    fail_unless_equals_int(all.size(), 4);
+    for (const Visit& visit : all) {
+      fail_unless_equals_int(visit.identities.size(), 1);
+      fail_unless_equals_int(*visit.identities.begin(), *all[0].identities.begin());
+    }
+  }
+}
+GST_END_TEST
+
+// They look the same: the side by which they come tells them apart.
+GST_START_TEST(another_person_on_the_other_side_does_not_get_it) {
+  for (const int seconds : {0, 2, 8}) {
+    const Path path = Path(44).to(kOutside).wait(25 * seconds).appear(-30).to(200);
+    const std::vector<Visit> all = visits(path, "");
+    fail_unless_equals_int(all.size(), 2);
+    for (const Visit& visit : all) fail_unless_equals_int(visit.identities.size(), 1);
+    fail_if(all[1].identities == all[0].identities);
   }
 }
 GST_END_TEST
@@ -202,6 +300,8 @@ static Suite* virtualptz_loop_suite() {
   suite_add_tcase(s, tc);
   tcase_set_timeout(tc, 60);
   tcase_add_test(tc, a_person_who_leaves_the_window_has_the_same_identity_on_return);
+  tcase_add_test(tc, a_person_who_returns_to_the_head_s_limit_has_the_same_identity);
+  tcase_add_test(tc, another_person_on_the_other_side_does_not_get_it);
   tcase_add_test(tc, frames_may_be_missing);
   tcase_add_test(tc, a_frame_may_be_lost_on_its_way_to_the_head);
   tcase_add_test(tc, a_frame_that_was_late_and_not_lost_changes_nothing);

@@ -49,10 +49,15 @@ TrackHypothesis standing(double x = 300) {
 }
 
 // The state after a frame in which each track has the region of its match.
-TrackPhase after(std::vector<TrackHypothesis> tracks, bool turning = false, TrackOptions options = {}) {
+TrackHypothesis first_after(std::vector<TrackHypothesis> tracks, bool turning = false,
+                            const TrackOptions& options = {}, bool head = false) {
   LifeCycle life;
-  life.advance(tracks, {kFrame, kSeconds, turning, camera()}, options);
-  return tracks[0].phase();
+  life.advance(tracks, {kFrame, kSeconds, turning, camera(), head}, options);
+  return tracks[0];
+}
+TrackPhase after(const std::vector<TrackHypothesis>& tracks, bool turning = false,
+                 const TrackOptions& options = {}) {
+  return first_after(tracks, turning, options).phase();
 }
 
 TrackPhase after(const TrackHypothesis& t) {
@@ -227,6 +232,21 @@ START_TEST(a_known_object_from_which_the_camera_turns_away_is_off_screen) {
 }
 END_TEST
 
+START_TEST(a_known_object_that_walks_out_of_the_picture_of_a_head_is_off_screen) {
+  TrackHypothesis t = track_at(-21, 190, Coasted{});
+  t.fit.longest = 0.5;
+  t.travel.most = 0.45;
+  const TrackHypothesis gone = first_after({t}, false, {}, true);
+  ck_assert(gone.walked_out());
+  ck_assert_double_eq(gone.speed(), 0);
+  // Where the camera turns it may be where it was.
+  const TrackHypothesis left = first_after({t}, true, {}, true);
+  ck_assert(left.is(TrackPhase::off_screen) && !left.walked_out());
+  t.travel.most = 0.44;
+  ck_assert(first_after({t}, false, {}, true).is(TrackPhase::lost));
+}
+END_TEST
+
 START_TEST(a_track_that_leaves_keeps_its_direction_and_what_was_not_cut) {
   for (const bool stopped : {false, true}) {
     TrackHypothesis t = track(stopped ? TrackLife(Stopped{}) : TrackLife(Coasted{}));
@@ -303,6 +323,12 @@ START_TEST(an_off_screen_track_is_lost_after_its_time_or_where_it_is_expected) {
   ck_assert(away(false, 300, 2, 0.97) == TrackPhase::lost);       // expected for 1.01 s
   ck_assert(away(false, -1, 2, 0.97) == TrackPhase::off_screen);  // not all of it is
   ck_assert(away(true, 300, 2, 0) == TrackPhase::stopped);        // nothing moves at its place
+  const auto outside = [](double before) {
+    return after(track_at(-50, 190, OffScreen{{}, 1, true, false, 0, true}),
+                 [&](TrackHypothesis& t) { t.unseen = before; });
+  };
+  ck_assert(outside(29.95) == TrackPhase::off_screen);
+  ck_assert(outside(29.97) == TrackPhase::lost);
   TrackHypothesis behind_the_camera = track(OffScreen{{}, 1, false, false, 0.97});
   ck_assert(after(behind_the_camera) == TrackPhase::off_screen);
 }
@@ -447,6 +473,7 @@ int main() {
        a_track_does_not_stop_at_the_edge_where_its_place_looks_otherwise,
        a_stopped_track_is_lost_after_hold_stopped_or_where_it_has_left_by_the_edge,
        a_known_object_from_which_the_camera_turns_away_is_off_screen,
+       a_known_object_that_walks_out_of_the_picture_of_a_head_is_off_screen,
        a_track_that_leaves_keeps_its_direction_and_what_was_not_cut,
        a_stopped_track_whose_place_is_in_view_again_is_whole_there,
        a_track_that_comes_back_is_what_it_was_and_takes_the_place_of_its_region,

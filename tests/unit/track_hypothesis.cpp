@@ -424,7 +424,13 @@ START_TEST(each_transition_leads_to_its_state) {
     LifeCycle::see(track);
     ck_assert(track.is(TrackPhase::confirmed));
   }
+  // One that walked out of the picture has no place where it would stand.
   LifeCycle::coast(track);
+  LifeCycle::stop(track);
+  LifeCycle::walk_out(track, camera);
+  ck_assert(track.is(TrackPhase::off_screen) && track.walked_out() && !track.stands());
+  LifeCycle::come_back(track, seen);
+  ck_assert(track.is(TrackPhase::coasted) && !track.walked_out());
   LifeCycle::stop(track);
   LifeCycle::leave(track, camera);
   std::get<OffScreen>(track.life).absent = 0.4;

@@ -118,6 +118,7 @@ END_TEST
 
 START_TEST(a_person_who_leaves_the_picture_of_a_still_camera_returns_as_a_new_track) {
   Turning camera;
+  camera.head = false;
   camera.watch(0, 2, 22);
   const std::uint32_t id = camera.id();
   ck_assert_uint_gt(id, 0);
@@ -126,6 +127,52 @@ START_TEST(a_person_who_leaves_the_picture_of_a_still_camera_returns_as_a_new_tr
   for (int k = 0; k < 8; ++k) camera.step(0, {46 - 2.0 * k});
   ck_assert_uint_eq(camera.tracks.size(), 1);
   ck_assert_uint_ne(camera.id(), id);
+}
+END_TEST
+
+// The identity of a person who walks out to the right of a head that stands, or to the left (side -1), and that of the
+// person who comes in after so many seconds: at the bearing `from`, 20 degrees a second, into a picture that looks along
+// `pan` by then.
+struct Met {
+  std::uint32_t before = 0, after = 0;
+};
+Met walks_out(double seconds, double from, double pan = 0, double side = 1, bool head = true) {
+  Turning camera;
+  camera.head = head;
+  if (!head) camera.turn(6, 6), camera.turn(0, 6);
+  Met met;
+  for (int k = 0; k < 22; ++k) camera.step(0, {side * 2 * k});
+  met.before = camera.id();
+  ck_assert_uint_gt(met.before, 0);
+  for (int k = 22; k < 30; ++k) camera.step(0, {side * 2 * k});  // out at 45 degrees
+  const int frames = static_cast<int>(10 * seconds);
+  const double step = pan / std::max(1.0, frames / 2.0);
+  for (int k = 0; k < frames; ++k) camera.step(k < frames / 2 ? camera.pan + step : camera.pan, {});
+  ck_assert_uint_eq(camera.tracks.size(), 0);
+  const double speed = from > camera.pan ? -2 : 2;
+  for (int k = 0; k < 8; ++k) camera.step(camera.pan, {from + speed * k});
+  ck_assert_uint_eq(camera.tracks.size(), 1);
+  met.after = camera.id();
+  return met;
+}
+
+START_TEST(a_person_who_walks_out_of_a_head_s_picture_is_expected_back_at_that_side) {
+  for (const bool head : {true, false})
+    for (const double side : {1.0, -1.0}) {
+      for (const double seconds : {1.0, 10.0, 28.0}) {
+        const Met same = walks_out(seconds, side * 46, 0, side, head),
+                  other = walks_out(seconds, side * -46, 0, side, head);
+        ck_assert_uint_eq(same.before, same.after);
+        ck_assert_uint_ne(other.before, other.after);
+      }
+      const Met late = walks_out(31, side * 46, 0, side, head);
+      ck_assert_uint_ne(late.before, late.after);
+      // The head turns back meanwhile, by 60 degrees: the place at 46 degrees is 106 degrees aside, behind the camera.
+      const Met turned = walks_out(8, side * -14, side * -60, side, head);
+      ck_assert_uint_eq(turned.before, turned.after);
+      const Met behind = walks_out(8, side * -106, side * -60, side, head);
+      ck_assert_uint_ne(behind.before, behind.after);
+    }
 }
 END_TEST
 
@@ -149,5 +196,6 @@ int main() {
                     a_track_behind_the_camera_keeps_its_identity, a_person_in_another_place_is_a_new_track,
                     an_off_screen_track_ends_after_the_away_time,
                     a_person_who_leaves_the_picture_of_a_still_camera_returns_as_a_new_track,
+                    a_person_who_walks_out_of_a_head_s_picture_is_expected_back_at_that_side,
                     an_object_uncovered_by_a_turning_camera_is_published_without_travel});
 }

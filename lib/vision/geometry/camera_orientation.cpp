@@ -19,6 +19,7 @@ bool OrientationEstimate::update(const std::optional<CameraOrientation>& reporte
   const bool anew =
       !gaze_ || frame.width != frame_.width || frame.height != frame_.height || (usable && !reported_);
   reported_ = usable;
+  turned_ = turned_ || !motion.is_identity();
   frame_ = frame;
   if (usable) {
     gaze_ = *reported;

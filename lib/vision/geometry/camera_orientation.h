@@ -28,7 +28,7 @@ class OrientationEstimate {
   // as many pixels has the same angles again.
   static constexpr double kUnknownFov = 1.0;  // radians
 
-  void reset() { gaze_.reset(); }
+  void reset() { *this = {}; }
   // Updates the orientation to frame k. reported: the head's pose, with a known lens. motion: frame k-1 to k, frame
   // pixels; the displacement of the middle point gives the angles by which the camera turned (roll and zoom are
   // ignored). Without a reported pose the angles continue from the last reported ones. Returns true when they jump,
@@ -36,11 +36,13 @@ class OrientationEstimate {
   // frames are then invalid.
   bool update(const std::optional<CameraOrientation>& reported, const Transform& motion, Size frame);
   const CameraOrientation& gaze() const { return *gaze_; }
+  // The camera is on a head: its pose is reported, or it has turned.
+  bool turns() const { return reported_ || turned_; }
 
  private:
   std::optional<CameraOrientation> gaze_;
   Size frame_;
-  bool reported_ = false;
+  bool reported_ = false, turned_ = false;
 };
 
 }  // namespace cerberus::vision

@@ -42,6 +42,7 @@ class Lens {
 
   bool known() const { return focal_ > 0; }
   double focal_length() const { return focal_; }  // pixels
+  Size frame() const { return frame_; }
 
   // Returns the direction of a point of the picture when the camera points to (pan, tilt).
   Direction direction(Point p, double pan, double tilt) const;

@@ -38,6 +38,14 @@ void LifeCycle::leave(TrackHypothesis& t, const CameraOrientation& camera) {
   t.life = OffScreen{direction, camera.magnification(direction), true, stopped, 0};
 }
 
+void LifeCycle::walk_out(TrackHypothesis& t, const CameraOrientation& camera) {
+  leave(t, camera);
+  OffScreen& data = std::get<OffScreen>(t.life);
+  data.walked_out = true;
+  data.stopped = false;
+  t.x.velocity = t.y.velocity = 0;
+}
+
 // The extent before was a guess where the picture's edge had cut it, and may have been a group's.
 void LifeCycle::come_back(TrackHypothesis& t, const Box& seen) {
   if (std::get<OffScreen>(t.life).stopped)
@@ -133,19 +141,25 @@ void LifeCycle::advance_stopped(TrackHypothesis& t) {
 void LifeCycle::advance_off_screen(TrackHypothesis& t) {
   OffScreen& data = std::get<OffScreen>(t.life);
   if (t.expected_in(frame_.size)) data.absent += frame_.seconds;
-  const double longest = data.stopped ? options_.hold_stopped : options_.away_time;
+  const double longest = data.stopped || data.walked_out ? options_.hold_stopped : options_.away_time;
   if (t.unseen > longest || data.absent > options_.coast_time)
     lose(t);
   else if (data.stopped && data.absent > 0)
     resume_stop(t);
 }
 
-// Goes off-screen where the camera has turned away from a well-known object, else it is lost.
+// Goes off-screen where the camera has turned away from a well-known object, or where that has walked out of the picture of
+// a head, else it is lost.
 void LifeCycle::depart(TrackHypothesis& t) {
   const Parameters& q = parameters_;
-  if (frame_.turning && (outside(t) || t.at_border(frame_.size)) && t.unseen < options_.away_time &&
-      t.fit.longest >= q.off_screen_fit && t.travel.most >= q.off_screen_travel)
+  const bool known = t.fit.longest >= q.off_screen_fit && t.travel.most >= q.off_screen_travel;
+  const bool at_edge = outside(t) || t.at_border(frame_.size);
+  if (!known || !at_edge || t.unseen >= options_.away_time)
+    lose(t);
+  else if (frame_.turning)
     leave(t, frame_.camera);
+  else if (frame_.head)
+    walk_out(t, frame_.camera);
   else
     lose(t);
 }

@@ -4,7 +4,8 @@
 //   tentative --confirm--> confirmed --coast--> coasted --stop--> stopped
 //
 //   see          coasted, stopped -> confirmed
-//   leave        coasted, stopped -> off_screen
+//   leave        coasted, stopped -> off_screen, where the camera turns away
+//   walk_out     the same, where the object leaves the picture of a head that stands
 //   come_back    off_screen -> coasted or stopped, as it was; then see in the same frame
 //   resume_stop  off_screen -> stopped
 //   lose         every state -> lost; the tracker removes lost tracks
@@ -80,6 +81,7 @@ class LifeCycle {
     double seconds = 0;    // since the previous frame
     bool turning = false;  // the camera moved since the previous frame
     CameraOrientation camera;
+    bool head = false;  // the camera can turn
   };
 
   // Transitions. The comment names the states in which each may be called.
@@ -87,7 +89,8 @@ class LifeCycle {
   static void coast(TrackHypothesis& track);                      // confirmed: no region
   static void stop(TrackHypothesis& track);                       // coasted
   static void see(TrackHypothesis& track);                        // coasted, stopped: a region corrected it
-  static void leave(TrackHypothesis& track, const CameraOrientation& camera);  // coasted, stopped
+  static void leave(TrackHypothesis& track, const CameraOrientation& camera);     // coasted, stopped
+  static void walk_out(TrackHypothesis& track, const CameraOrientation& camera);  // coasted, stopped
   static void come_back(TrackHypothesis& track, const Box& seen);  // off_screen: matched with a region
   static void resume_stop(TrackHypothesis& track);  // off_screen, stopped before: its place is in view again
   static void lose(TrackHypothesis& track);         // any

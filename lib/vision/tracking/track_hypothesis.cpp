@@ -84,7 +84,7 @@ bool TrackHypothesis::predict(double seconds, bool camera_moves) {
     for (MovingValue* a : {&x, &y})
       a->pp = std::min(a->pp + square(q.stopped_wander * s) * seconds,
                        std::max(square(q.stopped_uncertainty * s), a->pp));
-  } else {
+  } else if (!walked_out()) {
     const double acceleration = camera_moves ? q.panned_acceleration : q.acceleration;
     const double faster = std::max(1.0, speed() / (q.fast * s));
     for (MovingValue* a : {&x, &y}) a->predict(seconds, acceleration * square(faster * s));
@@ -158,6 +158,18 @@ bool TrackHypothesis::carry(const Transform& motion, Size frame) {
   return true;
 }
 
+// Where an off-screen track is looked for. One that walked out may have come nearer since: it is just outside the picture,
+// on its side, however far the camera has turned from there.
+Direction TrackHypothesis::expected(const Direction& kept, const CameraOrientation& camera) const {
+  if (!walked_out()) return kept;
+  const Size frame = camera.lens.frame();
+  const double middle = frame.height / 2.0;
+  const auto aside = [&](double bearing) { return sensing::wrap(bearing - camera.pan); };
+  const double left = aside(camera.direction({-width() / 2, middle}).bearing);
+  const double right = aside(camera.direction({frame.width + width() / 2, middle}).bearing);
+  return {camera.pan + std::clamp(aside(kept.bearing), left, right), kept.elevation};
+}
+
 void TrackHypothesis::predict_off_screen(double seconds, const CameraOrientation& camera) {
   OffScreen& data = std::get<OffScreen>(life);
   const Point before{x.position, y.position};
@@ -165,7 +177,8 @@ void TrackHypothesis::predict_off_screen(double seconds, const CameraOrientation
   const double pixels = camera.lens.focal_length() * data.magnification;  // a radian, about there
   data.direction.bearing = sensing::wrap(data.direction.bearing + (x.position - before.x) / pixels);
   data.direction.elevation -= (y.position - before.y) / pixels;
-  const auto seen = camera.project(data.direction);
+  const Direction direction = expected(data.direction, camera);
+  const auto seen = camera.project(direction);
   data.in_front = seen.has_value();
   x.position = seen ? seen->x : before.x;
   y.position = seen ? seen->y : before.y;
@@ -173,7 +186,7 @@ void TrackHypothesis::predict_off_screen(double seconds, const CameraOrientation
   travel.origin.y += y.position - before.y;
   uncut.whole.x += x.position - before.x;
   uncut.whole.y += y.position - before.y;
-  const double now = camera.magnification(data.direction), scale = now / data.magnification;
+  const double now = camera.magnification(direction), scale = now / data.magnification;
   data.magnification = now;
   for (double* v : {&x.velocity, &y.velocity, &uncut.velocity.x, &uncut.velocity.y}) *v *= scale;
   magnify(scale);

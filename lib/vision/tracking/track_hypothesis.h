@@ -37,13 +37,16 @@ struct Coasted {};
 struct Stopped {
   double absent = 0;  // s for which the place has looked otherwise
 };
-// The camera turned away from it: it is kept by bearing and elevation, unpublished.
+// The camera turned away from it, or it walked out of the picture: it is kept by bearing and elevation, unpublished.
 struct OffScreen {
   Direction direction;
   double magnification = 1;  // CameraOrientation::magnification() there
   bool in_front = true;      // of the camera: the position in pixels is valid
   bool stopped = false;      // it was when the camera turned away
   double absent = 0;         // s for which it was expected in the picture and not found
+  // It left while the camera stood, on a head that cannot turn further or that holds: it is expected back over the side
+  // of the picture that is next to it.
+  bool walked_out = false;
 };
 // Ended; the tracker removes it.
 struct Lost {};
@@ -152,6 +155,11 @@ struct TrackHypothesis {
     return is(TrackPhase::stopped) || (away && away->stopped);
   }
 
+  bool walked_out() const {
+    const auto* away = std::get_if<OffScreen>(&life);
+    return away && away->walked_out;
+  }
+
   double width() const { return std::exp(w.value); }
   double height() const { return std::exp(h.value); }
   double size() const { return std::max(width(), height()); }  // S in frame pixels
@@ -219,6 +227,7 @@ struct TrackHypothesis {
   };
 
   void magnify(double scale);
+  Direction expected(const Direction& kept, const CameraOrientation& camera) const;
   double approach() const;
   double stretch() const;
 

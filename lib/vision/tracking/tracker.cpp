@@ -236,7 +236,8 @@ std::span<const Track> Tracker::update(std::span<const Region> regions, const Tr
   s.remove_lost();
   undo_identity_swaps(s.tracks, s.parameters.swap);
   s.start_tracks();
-  s.life_cycle.advance(s.tracks, {frame, s.seconds, s.turning, s.orientation.gaze()}, s.options);
+  s.life_cycle.advance(s.tracks, {frame, s.seconds, s.turning, s.orientation.gaze(), s.orientation.turns()},
+                       s.options);
   s.remove_lost();
   s.life_cycle.end_duplicates(s.tracks);
   s.remove_lost();
