@@ -21,6 +21,19 @@ std::vector<std::string> events_up(GstHarness* h) {
   return names;
 }
 
+// A frame with the tracks 5 and 6, which is larger and newer.
+GstBuffer* two(GstClockTime time) {
+  GstBuffer* buffer = frame_with(time, 5, 1);
+  CerberusRegion large;
+  cerberus_region_init(&large);
+  large.id = 6;
+  large.tracked = TRUE;
+  large.width = large.height = 8;
+  large.age = GST_SECOND;
+  cerberus_buffer_add_region(buffer, &large);
+  return buffer;
+}
+
 }  // namespace
 
 GST_START_TEST(every_frame_carries_a_decision_and_only_changes_are_posted) {
@@ -83,17 +96,6 @@ GST_START_TEST(properties_count_while_playing) {
   fail_unless_equals_int(rig.show(frame_at(400 * kMs, -90)).action, CERBERUS_FUSION_ZERO);
   // The choice of target: the larger, the newer; a followed track is kept.
   g_object_set(rig.element, "target", 1, "camera-hold", guint64{0}, nullptr);
-  const auto two = [](GstClockTime time) {
-    GstBuffer* buffer = frame_with(time, 5, 1);
-    CerberusRegion large;
-    cerberus_region_init(&large);
-    large.id = 6;
-    large.tracked = TRUE;
-    large.width = large.height = 8;
-    large.age = GST_SECOND;
-    cerberus_buffer_add_region(buffer, &large);
-    return buffer;
-  };
   fail_unless_equals_int(rig.show(two(440 * kMs)).target, 6);
   g_object_set(rig.element, "target", 2, nullptr);
   fail_unless_equals_int(rig.show(two(480 * kMs)).target, 6);
@@ -112,17 +114,6 @@ GST_END_TEST
 
 GST_START_TEST(the_choice_of_its_head_downstream_is_the_decision_until_that_ends_it) {
   Rig rig(true, "head=gate target=largest");
-  const auto two = [](GstClockTime time) {
-    GstBuffer* buffer = frame_with(time, 5, 1);
-    CerberusRegion large;
-    cerberus_region_init(&large);
-    large.id = 6;
-    large.tracked = TRUE;
-    large.width = large.height = 8;
-    large.age = GST_SECOND;
-    cerberus_buffer_add_region(buffer, &large);
-    return buffer;
-  };
   const auto follow = [&](const char* head, guint track) {
     return cerberus::ask_to_follow(rig.video->sinkpad, head, track);
   };
