@@ -18,6 +18,8 @@ import tempfile
 import threading
 import time
 
+from rtsp_client import requests
+
 PATIENCE = 100  # seconds for what takes one on an idle machine
 CERBERUSD = sys.argv[1]
 
@@ -75,13 +77,7 @@ class LockedCamera(socketserver.StreamRequestHandler):
     log_ins = []
 
     def handle(self):
-        while True:
-            lines = []
-            while (line := self.rfile.readline()) != b'\r\n':
-                if not line:
-                    return  # closed
-                lines.append(line.decode().strip())
-            fields = dict(line.split(': ', 1) for line in lines[1:])
+        for _, _, fields in requests(self.rfile):
             answer = '401 Unauthorized\r\nWWW-Authenticate: Basic realm="camera"'
             if 'Authorization' in fields:
                 LockedCamera.log_ins.append(base64.b64decode(fields['Authorization'].split()[1]).decode())

@@ -13,6 +13,8 @@ import tempfile
 import threading
 import time
 
+from rtsp_client import requests
+
 PATIENCE = 60  # seconds for what takes one on an idle machine
 
 SDP = 'v=0\r\no=- 1 1 IN IP4 127.0.0.1\r\ns=x\r\nt=0 0\r\n'
@@ -30,14 +32,7 @@ PATHS = {
 
 class Camera(socketserver.StreamRequestHandler):
     def handle(self):
-        while True:
-            lines = []
-            while (line := self.rfile.readline()) != b'\r\n':
-                if not line:
-                    return  # closed
-                lines.append(line.decode().strip())
-            method, uri, _ = lines[0].split()
-            number = next(one.split()[1] for one in lines if one.startswith('CSeq:'))
+        for method, uri, fields in requests(self.rfile):
             status, body, more = '200 OK', '', 'Public: DESCRIBE, SETUP, PLAY\r\n'
             if method == 'DESCRIBE':
                 status, body = PATHS.get(re.sub('rtsp://[^/]*', '', uri), ('404 Not Found', ''))
@@ -46,7 +41,7 @@ class Camera(socketserver.StreamRequestHandler):
                     more = 'WWW-Authenticate: Basic realm="camera"\r\n'
             elif method == 'SETUP':
                 status = '461 Unsupported Transport'
-            self.wfile.write(f'RTSP/1.0 {status}\r\nCSeq: {number}\r\n{more}\r\n{body}'.encode())
+            self.wfile.write(f'RTSP/1.0 {status}\r\nCSeq: {fields["CSeq"]}\r\n{more}\r\n{body}'.encode())
 
 
 class Printer(socketserver.StreamRequestHandler):

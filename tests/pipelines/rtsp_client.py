@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A player's part of RTSP (RFC 2326) with a log-in by digest (RFC 2617) and packets on the connection itself."""
+"""A player's part of RTSP (RFC 2326) with a log-in by digest (RFC 2617) and packets on the connection itself; and the
+requests that a server reads."""
 import hashlib
 import re
 import socket
@@ -7,6 +8,18 @@ import ssl
 import time
 
 PATIENCE = 100  # seconds
+
+
+def requests(stream):
+    """The method, the URI and the header fields of each request without a body, until the connection is closed."""
+    while True:
+        lines = []
+        while (line := stream.readline()) != b'\r\n':
+            if not line:
+                return
+            lines.append(line.decode().strip())
+        method, uri, _ = lines[0].split()
+        yield method, uri, dict(line.split(': ', 1) for line in lines[1:])
 
 
 class Rtsp:
