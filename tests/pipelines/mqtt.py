@@ -17,7 +17,7 @@ import tempfile
 import threading
 import time
 
-from mqtt_client import BROKER, PATIENCE, Client, free_port, start_broker
+from mqtt_client import BROKER, PATIENCE, Client, free_port, robot_head, start_broker
 from page_client import Page, Socket
 
 PASSWORDS = shutil.which('mosquitto_passwd')
@@ -61,14 +61,7 @@ def line(folder, port, password, ca='ca.pem'):
             'discovery-prefix=homeassistant', 'commands=move-to stop arm', 'mode=armed', '!', 'pantiltsink']
 
 
-ROBOT = '''
-state-folder = "state"
-[page]
-port = PAGE
-[mqtt]
-host = "127.0.0.1"
-port = BROKER
-username = "camera"
+ROBOT = '''username = "camera"
 password-file = "password"
 CA
 commands = ["picture"]
@@ -91,8 +84,8 @@ def robot(program, folder, port, ca, client):
     """The page of a robot lists the cameras of the broker and shows a picture of one; a deleted event leaves it, too."""
     page = Page(free_port())
     (folder / 'password').chmod(0o600)
-    (folder / 'robot.toml').write_text(ROBOT.replace('PAGE', str(page.port)).replace('BROKER', str(port)).replace(
-        'CA', f'ca-file = "{ca}"' if ca else ''))
+    (folder / 'robot.toml').write_text(
+        robot_head(page.port, port) + ROBOT.replace('CA', f'ca-file = "{ca}"' if ca else ''))
     with open(folder / 'log', 'w', encoding='utf-8') as log:
         process = subprocess.Popen([program, folder / 'robot.toml'], stdout=log, stderr=log)
     try:

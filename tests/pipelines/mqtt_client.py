@@ -89,6 +89,21 @@ class Client:
             pass
 
 
+HEAD = '''
+state-folder = "state"
+[page]
+port = PAGE
+[mqtt]
+host = "127.0.0.1"
+port = BROKER
+'''
+
+
+def robot_head(page, broker):
+    """The first lines of a robot's configuration, with these ports; its [mqtt] goes on."""
+    return HEAD.replace('PAGE', str(page)).replace('BROKER', str(broker))
+
+
 def free_port():
     with socket.socket() as probe:
         probe.bind(('127.0.0.1', 0))

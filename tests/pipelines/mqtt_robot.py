@@ -14,21 +14,14 @@ import sys
 import tempfile
 import time
 
-from mqtt_client import BROKER, PATIENCE, Client, free_port, start_broker
+from mqtt_client import BROKER, PATIENCE, Client, free_port, robot_head, start_broker
 from page_client import Page, Socket
 
 if not BROKER:
     print('skipped: mosquitto is not installed')
     sys.exit(77)
 
-HEADER = '''
-state-folder = "state"
-[page]
-port = PAGE
-[mqtt]
-host = "127.0.0.1"
-port = BROKER
-discovery-prefix = "homeassistant"
+PUBLISHED = '''discovery-prefix = "homeassistant"
 commands = ["move-to", "move-by", "follow"]
 '''
 CAMERA = '''
@@ -141,7 +134,7 @@ def main():
         folder.chmod(0o755)
         (folder / 'mosquitto.conf').write_text(f'listener {port} 127.0.0.1\nallow_anonymous true\npersistence false\n')
         file, log = folder / 'robot.toml', folder / 'log'
-        write = lambda *cameras: file.write_text(HEADER.replace('PAGE', str(page.port)).replace('BROKER', str(port))
+        write = lambda *cameras: file.write_text(robot_head(page.port, port) + PUBLISHED
                                                  + ''.join(cameras))
         running = []
 
