@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What begins an event of the recorder, and what it does when files cannot be written.
-#include <signal.h>
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <memory>
 
@@ -193,21 +190,18 @@ GST_END_TEST
 
 // A limit of the process stands for the disk's end.
 GST_START_TEST(a_full_disk_costs_a_warning_and_recording_goes_on_when_there_is_room) {
-  signal(SIGXFSZ, SIG_IGN);
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  const rlimit small{256 << 10, before.rlim_max};  // the test's own notes are below that
   Rig rig;
   rig.frame_size = 16 << 10;
   rig.start();
   rig.play_to(57);
-  setrlimit(RLIMIT_FSIZE, &small);
-  rig.start_event();
-  rig.play_to(150);
-  g_autoptr(GstMessage) warning = rig.take(GST_MESSAGE_WARNING);
-  fail_unless(warning != nullptr);
-  g_autoptr(GstStructure) failed = rig.wait_for_file("failed");
-  setrlimit(RLIMIT_FSIZE, &before);
+  {
+    const FileLimit limit(256 << 10);
+    rig.start_event();
+    rig.play_to(150);
+    g_autoptr(GstMessage) warning = rig.take(GST_MESSAGE_WARNING);
+    fail_unless(warning != nullptr);
+    g_autoptr(GstStructure) failed = rig.wait_for_file("failed");
+  }
   rig.play_to(400);
   rig.finish();
   const auto later = recorded(rig, "/1-2.mp4");

@@ -3,6 +3,9 @@
 // ones it holds. Nothing is encoded or decoded.
 #pragma once
 
+#include <signal.h>
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -239,5 +242,39 @@ struct Rig {
   GstBus* bus;
   std::unique_ptr<Stream> video, audio, analysis;
 };
+
+// No file grows beyond so many bytes while it lives: this limit of the process stands for the end of a disk, which no
+// recorder notices before. The test's own notes take less.
+class FileLimit {
+ public:
+  explicit FileLimit(rlim_t bytes) {
+    signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit small{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~FileLimit() { setrlimit(RLIMIT_FSIZE, &before_); }
+  FileLimit(const FileLimit&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+// The next change of what keeps recordings from being made: its text; "sound": nothing does any more.
+inline std::string next_fault(Rig& rig) {
+  while (true) {
+    g_autoptr(GstMessage) message = rig.take(GST_MESSAGE_ELEMENT);
+    fail_unless(message != nullptr, "no fault is reported");
+    const GstStructure* facts = gst_message_get_structure(message);
+    const std::string state = gst_structure_get_string(facts, "state");
+    if (state == "sound") return state;
+    if (state == "fault") return gst_structure_get_string(facts, "fault");
+  }
+}
+
+inline void fault_names(Rig& rig, const char* first, const char* second) {
+  const std::string text = next_fault(rig);
+  fail_unless(text.find(first) != text.npos && text.find(second) != text.npos, "%s", text.c_str());
+}
 
 }  // namespace recorder_rig
