@@ -2,6 +2,7 @@
 // The driver v4l2.
 #include "heads/drivers.h"
 #if HAVE_V4L2
+#include "drivers/head/threaded_device.h"
 #include "drivers/v4l2/v4l2_controls.h"
 #include "drivers/v4l2/v4l2_head.h"
 #endif
@@ -40,7 +41,9 @@ int run_v4l2(const std::vector<drivers::OptionWord>& words) {
   if (const std::string wrong = read_words(words, options, around, read_word); !wrong.empty())
     return fail(wrong);
   if (options.device.empty()) return fail("v4l2 needs a camera (device=/dev/video0)");
-  drivers::V4l2Head head(options, std::make_unique<drivers::V4l2Controls>());
+  drivers::ThreadedDevice head(
+      std::make_unique<drivers::V4l2Head>(options, std::make_unique<drivers::V4l2Controls>()),
+      "the camera " + options.device);
   return serve(head, around);
 }
 #else

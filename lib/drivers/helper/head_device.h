@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What a helper process drives: one real head behind a protocol or a bus. serve_head() (helper_loop.h) calls it from one
-// thread. No call blocks for longer than a few milliseconds; what takes longer is done in steps by tick(). Time is
-// CLOCK_MONOTONIC as a parameter. Texts are for a user and name the device; empty = good.
+// thread. No call blocks for longer than a few milliseconds; what takes longer is done in steps by tick(), or on another
+// thread (head/threaded_device.h). Time is CLOCK_MONOTONIC as a parameter. Texts are for a user and name the device;
+// empty = good.
 #pragma once
 
 #include <string>
