@@ -39,7 +39,7 @@ class ClockedTimes {
   Time next(const Frame& frame) {
     const bool marked = std::exchange(marked_, false) || frame.marked;
     const bool confirmed = clock_confirms(frame.time, frame.last, frame.now);
-    return history_.next(frame.time, frame.nominal, marked || confirmed).time.value_or(frame.time);
+    return history_.next(frame.time, frame.nominal, marked, confirmed).time.value_or(frame.time);
   }
 
  private:

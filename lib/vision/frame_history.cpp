@@ -21,12 +21,12 @@ void FrameHistory::lose() {
 }
 
 std::optional<FrameHistory::Repeated> FrameHistory::repeat(std::optional<Time> time, double nominal,
-                                                           bool damaged) {
+                                                           bool damaged, bool confirmed) {
   if (!any_) return std::nullopt;
   ++repeats_;
   damage_ |= damaged;
   const double even = usual_ > 0 ? usual_ : nominal > 0 ? nominal : parameters_.unknown_distance;
-  if (is_outlier(time, even)) time = *shown_ + duration(even);
+  if (is_outlier(time, even, confirmed)) time = *shown_ + duration(even);
   shown_ = time;
   if (time && previous_ && *time > *previous_) {
     const double seconds = seconds_between(*previous_, *time);
@@ -46,13 +46,14 @@ void FrameHistory::begin_picture(std::optional<Time> time) {
 }
 
 // Decides whether the time of this frame is wrong by itself. Counts such frames in a row: call it once for each frame.
-// rhythm: usual distance of the stream's frames, seconds.
-bool FrameHistory::is_outlier(std::optional<Time> time, double rhythm) {
+// rhythm: usual distance of the stream's frames, seconds. known_right: the source or a clock says so.
+bool FrameHistory::is_outlier(std::optional<Time> time, double rhythm, bool known_right) {
   const double step = any_ && shown_ && time ? seconds_between(*shown_, *time) : 0;
   const double gap = std::max(parameters_.gap_seconds, parameters_.gap_factor * rhythm);
   const double least = distrusted_ ? gap : parameters_.outlier_factor * rhythm;
-  const bool far = step > std::max(distrusted_ ? gap : parameters_.outlier_forwards, least) ||
-                   -step > std::max(distrusted_ ? gap : parameters_.outlier_backwards, least);
+  const bool far =
+      !known_right && (step > std::max(distrusted_ ? gap : parameters_.outlier_forwards, least) ||
+                       -step > std::max(distrusted_ ? gap : parameters_.outlier_backwards, least));
   outliers_ = far ? outliers_ + 1 : 0;
   if (outliers_ <= parameters_.outliers) return far;
   outliers_ = 0;
@@ -94,10 +95,7 @@ FrameHistory::Step FrameHistory::next(std::optional<Time> time, double nominal, 
   take_back(time);
   const double rhythm = usual_ > 0 ? usual_ : nominal;
   const double even = rhythm > 0 ? rhythm : parameters_.unknown_distance;
-  if (marked || confirmed)
-    outliers_ = 0;
-  else if (is_outlier(time, even))
-    return pass_over(*time, even);
+  if (is_outlier(time, even, marked || confirmed)) return pass_over(*time, even);
   const std::optional<Ended> last = shown_ ? std::optional(Ended{*shown_, usual_}) : std::nullopt;
   Step step;
   step.time = time;

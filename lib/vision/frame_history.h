@@ -53,8 +53,9 @@ class FrameHistory {
         time;  // of this frame: its own, or, where that is an outlier, the one at the usual distance
   };
   // Records a frame that repeats the last picture, or (damaged) one in whose place the last picture counts. Returns
-  // nullopt where a scene begins. time, nominal: as of next().
-  std::optional<Repeated> repeat(std::optional<Time> time, double nominal, bool damaged = false);
+  // nullopt where a scene begins. time, nominal, confirmed: as of next().
+  std::optional<Repeated> repeat(std::optional<Time> time, double nominal, bool damaged = false,
+                                 bool confirmed = false);
 
   // Running time of the last frame with a picture of its own, where it had one.
   std::optional<Time> previous() const { return previous_; }
@@ -72,8 +73,8 @@ class FrameHistory {
   };
 
   // Records a frame with a picture of its own. time: its running time, where it has one. nominal: frame distance of the
-  // caps in seconds, 0 = variable. marked: the source says that the stream does not go on: its time is no outlier.
-  // confirmed: so does a clock (clock_confirms()), of a live camera that was silent for long.
+  // caps in seconds, 0 = variable. marked: the source says that the stream does not go on: its time is no outlier, and says
+  // nothing of those before it. confirmed: a clock says that the time is right (clock_confirms()): it is no outlier.
   Step next(std::optional<Time> time, double nominal, bool marked = false, bool confirmed = false);
   // Returns whether frames are missing between the last one, repeated or not, and this: a leaky queue marks the gap by
   // DISCONT, as a cut is marked.
@@ -83,7 +84,7 @@ class FrameHistory {
   void begin_picture(std::optional<Time> time);
   void follow(Step& step, std::optional<Time> time, double rhythm);
   void take_back(std::optional<Time> time);
-  bool is_outlier(std::optional<Time> time, double rhythm);
+  bool is_outlier(std::optional<Time> time, double rhythm, bool known_right);
   Step pass_over(Time time, double even);
 
   Parameters parameters_;

@@ -121,6 +121,12 @@ double nominal_distance(const GstVideoInfo& info) {
   return n > 0 ? static_cast<double>(d) / n : 0;
 }
 
+// The clock of a live pipeline says that the frame's time is right.
+bool is_confirmed(GstBaseTransform* trans, const AnalysisPrivate& priv, const Frame& frame) {
+  const auto time = known_time(frame.running_time);
+  return frame.live && time && vision::clock_confirms(*time, priv.history.previous(), clock_now(trans));
+}
+
 GstFlowReturn repeat_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buffer,
                            bool damaged = false) {
   Frame frame = frame_of(trans, priv, buffer);
@@ -131,7 +137,7 @@ GstFlowReturn repeat_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBu
   const bool goes_on = priv.analyser->measures_camera() ? priv.history.misses_frames(time, nominal)
                                                         : path_point(buffer).has_value();
   if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) && !goes_on) priv.history.drop();
-  const auto repeated = priv.history.repeat(time, nominal, damaged);
+  const auto repeated = priv.history.repeat(time, nominal, damaged, is_confirmed(trans, priv, frame));
   if (!repeated) return GST_FLOW_OK;  // of nothing
   frame.running_time = clock_time(repeated->time);
   frame.fresh = false;
@@ -156,10 +162,9 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   const bool marked = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) && !camera.connected &&
                       !(measures && priv.history.misses_frames(time, nominal));
   if (marked) priv.history.drop();
-  const bool confirmed =
-      frame.live && time && vision::clock_confirms(*time, priv.history.previous(), clock_now(trans));
   const vision::FrameHistory::Step step =
-      priv.history.next(time, nominal, GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT), confirmed);
+      priv.history.next(time, nominal, GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT),
+                        is_confirmed(trans, priv, frame));
   frame.running_time = clock_time(step.time);
   frame.fresh = step.fresh || camera.link == Link::cut || camera.link == Link::lost;
   frame.number = ++priv.number;

@@ -198,6 +198,14 @@ START_TEST(a_time_that_a_clock_confirms_is_no_outlier) {
     const FrameHistory::Step step = history.next(12s, kNominal, false, confirmed);
     ck_assert(step.broken == confirmed && step.time == (confirmed ? Time(12s) : 20 * kStep));
   }
+  // Nor of a frame that repeats the picture before.
+  for (const bool confirmed : {false, true}) {
+    FrameHistory history;
+    for (int k = 0; k < 20; ++k) history.next(k * kStep, kNominal);
+    const auto repeated = history.repeat(12s, kNominal, false, confirmed);
+    ck_assert(repeated->time == (confirmed ? Time(12s) : 20 * kStep));
+    ck_assert(std::abs(repeated->seconds - (confirmed ? 11.24 : .04)) < 1e-9);
+  }
 }
 END_TEST
 
