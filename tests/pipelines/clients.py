@@ -390,11 +390,15 @@ LEVELS = {16: 0, 126: 128, 235: 255}  # black, grey and white, in the range of v
 
 
 def check_levels(name, jpeg):
-    """Three bands in a JPEG have their levels, by ffmpeg."""
     pathlib.Path('bands.jpg').write_bytes(jpeg)
-    must(run('ffmpeg -nostdin -y -v error -i bands.jpg -f rawvideo -pix_fmt rgb24 bands.rgb'))
+    check_bands(name, 'bands.jpg', LEVELS.values())
+
+
+def check_bands(name, file, levels):
+    """Three bands in the first picture of a file have their levels, by ffmpeg."""
+    must(run(f'ffmpeg -nostdin -y -v error -i {file} -frames:v 1 -f rawvideo -pix_fmt rgb24 bands.rgb'))
     line = pathlib.Path('bands.rgb').read_bytes()[3 * WIDTH * HEIGHT // 4:]
-    for band, level in enumerate(LEVELS.values()):
+    for band, level in enumerate(levels):
         at = 3 * (WIDTH * (2 * band + 1) // 6)
         print(f'{name}: {level} is {list(line[at:at + 3])}')
         assert all(abs(each - level) <= 3 for each in line[at:at + 3]), f'{name}: a level of {level} is wrong'
@@ -403,6 +407,23 @@ def check_levels(name, jpeg):
 def first_jpeg(data):
     start_of, end_of = data.index(b'\xff\xd8'), data.index(b'\xff\xd9')
     return data[start_of:end_of + 2]
+
+
+def test_ranges():
+    """The JPEGs of a camera have the full range of levels, and no encoder makes them darker or brighter."""
+    if not shutil.which('ffmpeg'):
+        sys.exit(77)
+    levels = 30, 128, 225
+    row = b''.join(bytes([level] * 3) * (WIDTH * (band + 1) // 3 - WIDTH * band // 3) for band, level in enumerate(levels))
+    pathlib.Path('bands.raw').write_bytes(row * HEIGHT * 5)
+    must(gst_launch(f'filesrc location=bands.raw ! rawvideoparse width={WIDTH} height={HEIGHT} format=rgb framerate={RATE}/1 ! '
+                    f'{encoder("jpeg")} ! matroskamux ! filesink location=bands.mkv'))
+    for name in ('x264', 'openh264', 'vp8'):
+        # Files that say nothing of the range themselves, as RTP does not.
+        bare = 'avmux_ivf' if name == 'vp8' else 'h264parse ! video/x-h264,stream-format=byte-stream'
+        must(gst_launch(f'filesrc location=bands.mkv ! matroskademux ! jpegdec ! videoconvertscale ! video/x-raw,format=I420 ! '
+                        f'{encoder(name)} ! {bare} ! filesink location=encoded.{name}'))
+        check_bands(name, f'encoded.{name}', levels)
 
 
 def test_levels(program):
