@@ -33,7 +33,7 @@ struct PirSettings {
   int chatter_edges = static_cast<int>(sensing::PirOptions{}.chatter_edges);
   guint64 chatter_window = clock_time(sensing::PirOptions{}.chatter_window);
 
-  std::string chip = "/dev/gpiochip0";
+  std::string chip = drivers::SensorSetup{}.chip;
   std::string lines, leds_red, leds_blue;
   int bias = static_cast<int>(drivers::SensorSetup{}.bias);
 

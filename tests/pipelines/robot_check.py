@@ -16,6 +16,9 @@ PATIENCE = 60  # seconds for what takes one on an idle machine
 FRONT = '[[camera]]\nname = "front"\nkind = "test"\n'  # lines 1 to 3
 BACK = '[[camera]]\nname = "back"\nkind = "test"\n'
 VISCA = '[camera.head]\ndriver = "visca"\ndevice = "serial:/dev/ttyS9"\n'
+GPIO = '[camera.sensors]\ndriver = "gpio"\nlines = "1,2,3"\n'
+STEPPER = '[camera.head]\ndriver = "stepper-gpio"\ndevice = "{chip}"\ndevice-options = "pan=\'lines={lines}\'"\n'
+SERVO = '[camera.head]\ndriver = "servo-pwm"\ndevice = "pwmchip0"\ndevice-options = "{options}"\n'
 PAGE = '[page]\nenabled = false\n'
 
 # A file, the line of its mistake, and words of the message.
@@ -99,6 +102,15 @@ MISTAKES = [
      'device-options = "pan=\'lines=17,18,17,22\'"\n', 7, ['device-options', '17', 'twice']),
     (FRONT + '[camera.head]\ndriver = "servo-pwm"\ndevice = "pwmchip0"\ndevice-options = "pan=\'channel=0\' tilt=\'channel=0\'"\n', 7,
      ['device-options', 'same channel']),
+    (FRONT + GPIO + BACK + '[camera.sensors]\ndriver = "gpio"\nlines = "4,5,3"\nchip = "gpiochip0"\n', 12, ['lines', '"3"', 'front']),
+    (FRONT + GPIO + STEPPER.format(chip='0', lines='7,8,9,3'), 6, ['lines', '"3"', 'the head of']),
+    (FRONT + STEPPER.format(chip='/dev/gpiochip0', lines='1,2,3,4') + BACK + STEPPER.format(chip='gpiochip0', lines='5,6,7,4'), 14,
+     ['device-options', '"4"', 'front']),
+    (FRONT + SERVO.format(options="pan='channel=0'") + 'pan-min = -45\npan-max = 45\n' + BACK +
+     SERVO.format(options="tilt='channel=0'"), 16, ['device-options', 'channel=0', 'front']),
+    (FRONT + SERVO.format(options="pan='channel=0 range=-60,60'") + 'pan-min = -60\npan-max = 61\n', 9,
+     ['pan-max', 'beyond what the servo reaches', '-60 to 60']),
+    (FRONT + SERVO.format(options="tilt='channel=0 trim=5'"), 4, ['tilt-min -45', 'beyond what the servo reaches', '-50 to 40']),
     ('[[camera]]\nname = "w"\nkind = "world"\nfile = "short"\nstart-pan = 80\n[camera.head]\npan-max = 10\n', 7,
      ['start-pan', '80', 'pan-max']),
 ]

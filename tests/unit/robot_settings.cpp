@@ -23,6 +23,9 @@ using namespace cerberus::robot;
 namespace {
 
 #define SMALLEST "[[camera]]\nname = \"front\"\nkind = \"test\"\n"
+#define BACK "[[camera]]\nname = \"b\"\nkind = \"test\"\n"
+#define PARTS(driver, device, options) HEAD(driver, device) "device-options = \"" options "\"\n"
+#define LINES(lines, more) "[camera.sensors]\ndriver = \"gpio\"\nlines = \"" lines "\"\n" more
 #define HEAD(driver, device) "[camera.head]\ndriver = \"" driver "\"\ndevice = \"" device "\"\n"
 const std::string kSmallest = SMALLEST;
 
@@ -63,6 +66,16 @@ START_TEST(the_smallest_file_has_one_camera_and_a_page_on_loopback) {
   ck_assert(!all.cameras[0].head && !all.cameras[0].sensors && !all.cameras[0].recorder);
   ck_assert(all.page.enabled && all.page.listen == "127.0.0.1" && all.page.port == 8080);
   ck_assert(all.mode.start == Mode::armed);
+}
+END_TEST
+
+START_TEST(two_heads_share_a_chip_but_no_line_and_no_channel) {
+  settings(SMALLEST PARTS("stepper-gpio", "gpiochip0", "pan='lines=1,2,3,4' emergency-stop=gpiochip1:1")
+               LINES("5,6,7", "")
+                   BACK PARTS("stepper-gpio", "0", "pan='lines=8,9,10,11' emergency-stop=gpiochip1:2")
+                       LINES("1,2,3", "chip = \"pinctrl-bcm2711\"\n"));
+  settings(SMALLEST PARTS("servo-pwm", "0", "pan='channel=0' tilt='channel=1'")
+               BACK PARTS("servo-pwm", "0", "pan='channel=2' tilt='channel=10'"));
 }
 END_TEST
 
@@ -193,10 +206,35 @@ START_TEST(every_mistake_is_reported_with_its_line) {
        "r.toml:5: nothing takes the stream of \"record-uri\""},
       {SMALLEST HEAD("visca", "serial:/dev/tty9") "[[camera]]\nname = \"b\"\nkind = \"test\"\n" HEAD(
            "visca", "serial:/dev//tty9"),
-       "r.toml:12: \"device\" of camera \"b\" is \"serial:/dev//tty9\", which camera \"front\" uses already"},
+       "r.toml:12: \"device\" of camera \"b\" is \"serial:/dev//tty9\", which is in use by camera \"front\" "
+       "already"},
       {SMALLEST HEAD("pelco-d", "serial:/dev/tty9") "[camera.sensors]\ndriver = \"external\"\ndevice = "
                                                     "\"serial:/dev/tty9\"\n",
        "r.toml:9: \"device\" is \"serial:/dev/tty9\" of the head of camera \"front\" and of the sensors"},
+      // One chip has many names, and a line one user.
+      {SMALLEST LINES("1,2,3", "") BACK LINES("4,5,03", "chip = \"0\"\n"),
+       "r.toml:12: \"lines\" of camera \"b\" is \"03\", which is in use by the sensors of camera \"front\" "
+       "already"},
+      {SMALLEST LINES("1,2,3", "") BACK LINES("4,5,6", "leds-red = \"7,8,3\"\nchip = \"gpiochip0\"\n"),
+       "r.toml:13: \"leds-red\" of camera \"b\" is \"3\", which is in use by the sensors of camera \"front\" "
+       "already"},
+      {SMALLEST LINES("1,2,3", "") PARTS("stepper-gpio", "/dev/gpiochip0", "tilt='lines=9,3 steps=400'"),
+       "r.toml:6: \"lines\" of camera \"front\" is \"3\", which is in use by the head of camera \"front\" "
+       "already"},
+      {SMALLEST PARTS("stepper-gpio", "gpiochip1", "pan='lines=1,2,3,4'")
+           BACK PARTS("stepper-gpio", "1", "pan='lines=5,6 steps=400 end-stop=4@-90'"),
+       "r.toml:14: \"device-options\" of camera \"b\" is \"4\", which is in use by the head of camera "
+       "\"front\" already"},
+      {SMALLEST PARTS("visca", "serial:/dev/tty9", "emergency-stop=gpiochip0:2") BACK LINES("1,2,3", ""),
+       "r.toml:13: \"lines\" of camera \"b\" is \"2\", which is in use by the emergency stop of camera "
+       "\"front\""},
+      {SMALLEST PARTS("stepper-gpio", "0", "pan='lines=1,2,3,4' emergency-stop=gpiochip0:2"),
+       "r.toml:7: \"device-options\" of camera \"front\" is \"2\", which is in use by the head of camera "
+       "\"front\""},
+      {SMALLEST PARTS("servo-pwm", "pwmchip0", "pan='channel=0' tilt='channel=1'")
+           BACK PARTS("servo-pwm", "/sys/class/pwm/pwmchip0", "tilt='channel=1'"),
+       "r.toml:14: \"device-options\" of camera \"b\" is \"channel=1\", which is in use by the head of "
+       "camera \"front\""},
       {"[page]\nport = \n", "r.toml:2: "},
       {"[page]\nlisten = \"localhost\"\n", "r.toml:2: \"listen\" is a numeric address"},
       {"[page]\nlisten = \"127.0.0.1:80\"\n", "r.toml:2: \"listen\" is a numeric address"},
@@ -671,6 +709,7 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "robot settings", {the_smallest_file_has_one_camera_and_a_page_on_loopback,
+                         two_heads_share_a_chip_but_no_line_and_no_channel,
                          a_whole_file_becomes_typed_settings,
                          every_mistake_is_reported_with_its_line,
                          a_move_by_mqtt_ends_after_a_minute_or_as_configured,

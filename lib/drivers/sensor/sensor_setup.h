@@ -22,7 +22,7 @@ struct SensorSetup {
 
   // gpio: a path, a name (gpiochip0), a number or a label; lines by name or offset, one a sensor. Red and blue: LEDs,
   // one a sensor each, or none at all.
-  std::string chip;
+  std::string chip = "/dev/gpiochip0";
   std::vector<std::string> lines, red, blue;
   LineBias bias = LineBias::as_is;
 

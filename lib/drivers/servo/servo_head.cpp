@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "drivers/transport/exclusive.h"
-#include "text/numbers.h"
 
 namespace cerberus::drivers {
 namespace {
@@ -20,10 +19,6 @@ using motion::AxisLimits;
 constexpr int kLastPulse =
     2;  // periods with the width 0 before the output is disabled: the pulse that ran has ended
 constexpr std::chrono::milliseconds kReport{40};
-
-std::string in_degrees(double angle) {
-  return text::significant(sensing::degrees(angle), 6).string();
-}
 
 // The PWM chips of this machine, for messages.
 std::string chips() {
@@ -94,11 +89,7 @@ std::string ServoHead::open(const HeadSetup& setup, Time now) {
     axis.plan = motion::Plan(start, now);
     axis.rest_since = now;
     if (!axis.there()) return std::string();
-    const AxisLimits reach = axis.options.reach();
-    if (limits.from < reach.from - 1e-9 || limits.to > reach.to + 1e-9)
-      return std::string(name) + "-min " + in_degrees(limits.from) + " and " + name + "-max " +
-             in_degrees(limits.to) + " are beyond what the servo reaches, " + in_degrees(reach.from) +
-             " to " + in_degrees(reach.to) + " (range and trim): set " + name + "-min and " + name + "-max";
+    if (std::string wrong = axis.options.beyond_reach(name, limits); !wrong.empty()) return wrong;
     set_limits(axis, limits);
     return open_axis(name, axis, PwmChannel::kPatience);
   };

@@ -31,6 +31,8 @@ struct ServoAxisOptions {
   Time pulse_at(double angle) const;
   // The angles that it reaches, trim included.
   motion::AxisLimits reach() const;
+  // What of the limits of the axis `name` it does not reach, for a user; empty: nothing.
+  std::string beyond_reach(const std::string& name, const motion::AxisLimits& limits) const;
 };
 
 struct ServoOptions {

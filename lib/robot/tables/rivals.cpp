@@ -2,13 +2,17 @@
 #include "robot/tables/rivals.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "drivers/head/head_place.h"
+#include "drivers/sensor/sensor_setup.h"
+#include "drivers/servo/servo_options.h"
+#include "drivers/stepper/stepper_options.h"
+#include "text/numbers.h"
 
 namespace cerberus::robot {
 
@@ -34,17 +38,17 @@ std::string real_path(const std::string& path) {
   return wrong ? path : real.string();
 }
 
-std::vector<std::string> comma_list(std::string_view text) {
-  std::vector<std::string> all;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find(','), text.size());
-    std::string_view word = text.substr(0, end);
-    while (word.starts_with(' ')) word.remove_prefix(1);
-    while (word.ends_with(' ')) word.remove_suffix(1);
-    all.emplace_back(word);
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return all;
+// One text for all spellings of a GPIO chip but its label.
+std::string chip_of(std::string name) {
+  if (name.empty()) name = drivers::SensorSetup{}.chip;
+  if (drivers::number_of(name)) name.insert(0, "gpiochip");
+  if (name.starts_with("gpiochip")) name.insert(0, "/dev/");
+  return name.starts_with('/') ? real_path(name) : name;
+}
+
+std::string line_of_chip(const std::string& chip, const std::string& line) {
+  const auto number = drivers::number_of(line);  // 017 is 17
+  return chip_of(chip) + ' ' + (number ? text::significant(*number, 9).string() : line);
 }
 
 // Whether servers at these numeric addresses would want the same ports.
@@ -53,24 +57,31 @@ bool overlap(const std::string& a, const std::string& b) {
   return a == b || is_any(a) || is_any(b);
 }
 
-// What is taken, and by which camera.
+// What is taken, and by which part of which camera.
 class Owners {
  public:
   explicit Owners(Mistakes& mistakes) : mistakes_(mistakes) {}
 
-  // `what` is used by a camera's key, whose text is `as`; the later of two is the mistake.
-  void take(const std::string& what, const CameraSettings& camera, std::uint32_t line, const std::string& key,
-            const std::string& as, std::string_view advice) {
-    const auto [owner, is_new] = owners_.emplace(what, camera.name);
-    if (is_new) return;
-    mistakes_.push_back({line, "\"" + key + "\" of camera \"" + camera.name + "\" is \"" + as +
-                                   "\", which camera \"" + owner->second +
-                                   "\" uses already: " + std::string(advice)});
+  struct Use {
+    const CameraSettings& camera;
+    std::string
+        part;  // "the head of "; one part that takes a thing twice is no mistake here: its element says so
+    std::uint32_t line;
+    std::string key, as;  // as the file has it
+  };
+  // The later of two uses of `what` is the mistake.
+  void take(const std::string& what, const Use& use, std::string_view advice) {
+    const auto [owner, is_new] = owners_.emplace(what, std::pair(use.camera.name, use.part));
+    if (is_new || (owner->second == std::pair(use.camera.name, use.part) && !use.part.empty())) return;
+    mistakes_.push_back({use.line, "\"" + use.key + "\" of camera \"" + use.camera.name + "\" is \"" +
+                                       use.as + "\", which is in use by " + owner->second.second +
+                                       "camera \"" + owner->second.first +
+                                       "\" already: " + std::string(advice)});
   }
 
  private:
   Mistakes& mistakes_;
-  std::map<std::string, std::string> owners_;
+  std::map<std::string, std::pair<std::string, std::string>> owners_;
 };
 
 std::uint32_t line_of(const Lines& lines, std::string_view key, std::uint32_t otherwise) {
@@ -82,45 +93,70 @@ void take_source(const CameraSettings& camera, Owners& owners) {
   const SourceSettings& source = camera.source;
   const std::uint32_t line = line_of(camera.lines, "device", camera.line);
   constexpr std::string_view kAdvice = "a device gives its pictures to one camera; name another";
-  if (source.kind == SourceKind::v4l2)
-    owners.take("capture " + real_path(source.device), camera, line, "device", source.device, kAdvice);
-  if (source.kind == SourceKind::libcamera)
-    owners.take("libcamera " + source.device, camera, line, "device", source.device, kAdvice);
+  const Owners::Use use{camera, "", line, "device", source.device};
+  if (source.kind == SourceKind::v4l2) owners.take("capture " + real_path(source.device), use, kAdvice);
+  if (source.kind == SourceKind::libcamera) owners.take("libcamera " + source.device, use, kAdvice);
+}
+
+constexpr std::string_view kOneUser = "a GPIO line has one user; name another";
+
+void take_line(const std::string& chip, const std::string& line, const Owners::Use& use, Owners& owners) {
+  owners.take("line " + line_of_chip(chip, line), use, kOneUser);
+}
+
+// The lines of its motors, and the channels of its servos.
+void take_motors(const CameraSettings& camera, const std::string& driver, const std::string& device,
+                 const Property& options, Owners& owners) {
+  for (const drivers::OptionWord& word : drivers::option_words(options.value)) {
+    Owners::Use use{camera, "the head of ", options.line, options.name, ""};
+    drivers::StepperAxisOptions stepper;
+    drivers::ServoAxisOptions servo;
+    const bool axis = word.key == "pan" || word.key == "tilt";
+    if (const auto sign = word.value.rfind(':'); word.key == "emergency-stop" && sign != word.value.npos) {
+      use.part = "the emergency stop of ";
+      use.as = word.value.substr(sign + 1);
+      take_line(word.value.substr(0, sign), use.as, use, owners);
+    } else if (axis && driver == "stepper-gpio" && drivers::parse_stepper_axis(word.value, stepper).empty()) {
+      if (!stepper.end_stop.empty()) stepper.lines.push_back(stepper.end_stop);
+      for (const std::string& line : stepper.lines) {
+        use.as = line;
+        take_line(device, line, use, owners);
+      }
+    } else if (axis && driver == "servo-pwm" && drivers::parse_servo_axis(word.value, servo).empty()) {
+      use.as = "channel=" + std::to_string(servo.channel);
+      owners.take("pwm " + real_path(drivers::pwm_chip_folder(device)) + ' ' + std::to_string(servo.channel),
+                  use, "a PWM channel drives one servo; name another");
+    }
+  }
 }
 
 void take_head(const CameraSettings& camera, Owners& owners) {
   const Property* device = find(camera.head, "device");
   if (device == nullptr) return;
-  const std::string driver = value(camera.head, "driver"), options = value(camera.head, "device-options");
-  std::string place = drivers::head_place(driver, device->value, drivers::option_words(options));
-  // Its lines or channels are parts of the options.
-  if (place.empty() && (driver == "stepper-gpio" || driver == "servo-pwm"))
-    place = device->value + ' ' + options;
-  if (place.empty()) return;
-  owners.take("head " + driver + ' ' + place, camera, device->line, "device", device->value,
-              "a head follows one camera; name another (or another address= in \"device-options\")");
+  const Property* options = find(camera.head, "device-options");
+  const std::string driver = value(camera.head, "driver");
+  const std::string place = drivers::head_place(
+      driver, device->value, drivers::option_words(options ? std::string_view(options->value) : ""));
+  if (!place.empty())
+    owners.take("head " + driver + ' ' + place, {camera, "", device->line, "device", device->value},
+                "a head follows one camera; name another (or another address= in \"device-options\")");
+  if (options) take_motors(camera, driver, device->value, *options, owners);
 }
 
 void take_sensors(const CameraSettings& camera, Owners& owners) {
   const std::string driver = value(camera.sensors, "driver");
   if (driver == "gpio") {
     const std::string chip = value(camera.sensors, "chip");
-    for (const char* key : {"lines", "leds-red", "leds-blue"}) {
-      const Property* lines = find(camera.sensors, key);
-      if (lines == nullptr) continue;
-      std::vector<std::string> words = comma_list(lines->value);
-      std::ranges::sort(words);  // pirsrc itself names one that a camera has twice
-      words.erase(std::unique(words.begin(), words.end()), words.end());
-      for (const std::string& word : words)
-        owners.take("line " + chip + ' ' + word + (std::string_view(key) == "lines" ? "" : " of an LED"),
-                    camera, lines->line, key, word, "a GPIO line belongs to one sensor; name another");
-    }
+    for (const char* key : {"lines", "leds-red", "leds-blue"})
+      if (const Property* lines = find(camera.sensors, key))
+        for (const std::string& line : drivers::comma_list(lines->value))
+          take_line(chip, line, {camera, "the sensors of ", lines->line, key, line}, owners);
   } else if (driver == "external") {
     const Property* device = find(camera.sensors, "device");
     if (device == nullptr) return;
     const bool serial = device->value.starts_with(kSerial);
     const std::string path = serial ? device->value.substr(kSerial.size()) : device->value;
-    owners.take("lines of " + real_path(path), camera, device->line, "device", device->value,
+    owners.take("lines of " + real_path(path), {camera, "", device->line, "device", device->value},
                 "its lines are read by one; name another");
   }
 }
