@@ -58,9 +58,10 @@ std::string read_positive(const OptionWord& word, double most, double& number) {
 // "PAN-MIN,PAN-MAX,TILT-MIN,TILT-MAX"
 std::string read_range(const std::string& list, drivers::onvif::Mechanics& mechanics) {
   std::vector<double> numbers;
-  for (const std::string& part : drivers::split(list, ','))
+  const auto parts = drivers::split(list, ',');
+  for (const std::string& part : parts)
     if (const auto number = number_of(part)) numbers.push_back(*number);
-  if (numbers.size() != 4 || numbers[0] >= numbers[1] || numbers[2] >= numbers[3])
+  if (parts.size() != 4 || numbers.size() != 4 || numbers[0] >= numbers[1] || numbers[2] >= numbers[3])
     return "range is four numbers of degrees, PAN-MIN,PAN-MAX,TILT-MIN,TILT-MAX, each MIN below its MAX";
   mechanics.least = drivers::onvif::Angles{numbers[0], numbers[2]};
   mechanics.most = drivers::onvif::Angles{numbers[1], numbers[3]};

@@ -11,7 +11,9 @@ int run_servo([[maybe_unused]] const std::vector<drivers::OptionWord>& words) {
 #if HAVE_SERVO
   drivers::ServoOptions options;
   std::string emergency_stop;
-  for (const auto& [key, value, has_value] : words) {
+  drivers::Inverted inverted;
+  for (const drivers::OptionWord& word : words) {
+    const auto& [key, value, has_value] = word;
     std::string wrong;
     if (key == "device") {
       options.chip = drivers::pwm_chip_folder(value);
@@ -27,15 +29,20 @@ int run_servo([[maybe_unused]] const std::vector<drivers::OptionWord>& words) {
         wrong = "frequency=" + value + ": pulses a second, 20 to 400";
       else
         options.period = drivers::Time(static_cast<drivers::Time::rep>(1e9 / *hertz));
+    } else if (key == "invert") {
+      wrong = drivers::parse_inverted(word, inverted);
     } else if (key == "emergency-stop") {
       emergency_stop = value;
     } else {
-      wrong = "\"" + key +
-              "\" is no option of servo-pwm: device, pan, tilt, frequency, release-delay, emergency-stop";
+      wrong =
+          "\"" + key +
+          "\" is no option of servo-pwm: device, pan, tilt, frequency, release-delay, emergency-stop, invert";
     }
     if (!wrong.empty()) return fail(wrong);
   }
   if (options.chip.empty()) return fail("servo-pwm needs a PWM chip (device=pwmchip0)");
+  options.pan.invert = options.pan.invert || inverted.pan;
+  options.tilt.invert = options.tilt.invert || inverted.tilt;
   drivers::ServoHead head(options);
   return serve(head, {.emergency_stop = emergency_stop});
 #else

@@ -26,7 +26,9 @@ int run_stepper([[maybe_unused]] const std::vector<drivers::OptionWord>& words) 
 #if HAVE_STEPPER
   drivers::StepperOptions options;
   std::string emergency_stop, record;
-  for (const auto& [key, value, has_value] : words) {
+  drivers::Inverted inverted;
+  for (const drivers::OptionWord& word : words) {
+    const auto& [key, value, has_value] = word;
     std::string wrong;
     if (key == "device")
       options.chip = value;
@@ -38,6 +40,8 @@ int run_stepper([[maybe_unused]] const std::vector<drivers::OptionWord>& words) 
       wrong = drivers::parse_release_delay(value, options.release_delay);
     else if (key == "late-limit")
       wrong = read_late_limit(value, options.stale);
+    else if (key == "invert")
+      wrong = drivers::parse_inverted(word, inverted);
     else if (key == "emergency-stop")
       emergency_stop = value;
     else if (key == "record")
@@ -46,9 +50,11 @@ int run_stepper([[maybe_unused]] const std::vector<drivers::OptionWord>& words) 
       wrong =
           "\"" + key +
           "\" is no option of stepper-gpio: device, pan, tilt, release-delay, late-limit, emergency-stop, "
-          "record";
+          "invert, record";
     if (!wrong.empty()) return fail(wrong);
   }
+  options.pan.invert = options.pan.invert || inverted.pan;
+  options.tilt.invert = options.tilt.invert || inverted.tilt;
   if (options.chip.empty()) return fail("stepper-gpio needs a GPIO chip (device=gpiochip0)");
   std::FILE* steps = record.empty() ? nullptr : std::fopen(record.c_str(), "we");
   if (!record.empty() && !steps) return fail("record=" + record + ": " + std::strerror(errno));

@@ -215,6 +215,26 @@ def test_what_cannot_be_is_named():
     assert status == 1 and '--horizontal-fov is needed' in said, said
 
 
+def test_words_of_a_driver_that_cannot_be_are_named():
+    turned = ["pan=lines=1,2,3,4", 'device=gpiochip0'], ['pan=channel=0', 'device=pwmchip0']
+    for words, text in ((['onvif', 'device=http://h', 'range=-170,170,x,-30,90'], 'range is four numbers'),
+                        (['onvif', 'device=http://h', 'range=-170,170,-30,90,'], 'range is four numbers'),
+                        (['onvif', 'device=http://h', 'range=-170,170,-30,90'], ''),
+                        (['v4l2', 'device=/dev/video9', 'mode=speed', 'pan-speed=60'], 'have no unit'),
+                        (['v4l2', 'device=/dev/video9', 'mode=speed', 'pan-speed=60', 'tilt-speed=60'], ''),
+                        (['stepper-gpio', *turned[0], 'invert=pan'], ''),
+                        (['stepper-gpio', *turned[0], 'invert=no'], 'invert=pan, invert=tilt'),
+                        (['servo-pwm', *turned[1], 'invert=pan', 'invert=tilt'], ''),
+                        (['servo-pwm', *turned[1], 'invert=no'], 'invert=pan, invert=tilt'),
+                        (['servo-pwm', *turned[1], 'frequency=500'], 'frequency=500'),
+                        (['servo-pwm', 'device=pwmchip0', 'pan=channel=0 pulse=500,2600', 'frequency=400'],
+                         'does not end before the next one')):
+        status, said = run([HELPER, '--check', *words])
+        if re.search('left out of this build|build was made without', said):
+            continue
+        assert (status == 0) == (text == '') and text in said, (words, said)
+
+
 if not HAVE_VISCA:
     print('skipped: one program drives a head, inverted axes (this build has no driver visca)')
     del test_one_program_drives_a_head_and_a_killed_one_frees_it

@@ -125,6 +125,10 @@ START_TEST(the_axes_are_named_or_both) {
     assert_text(parse_inverted(option_word(one.word), inverted), "");
     ck_assert(inverted.pan == one.pan && inverted.tilt == one.tilt);
   }
+  Inverted two;
+  for (const char* word : {"invert=pan", "invert=tilt"})
+    assert_text(parse_inverted(option_word(word), two), "");
+  ck_assert(two.pan && two.tilt);
   for (const char* word : {"invert=", "invert=yes", "invert=pan,", "invert=Pan"}) {
     Inverted inverted;
     ck_assert(parse_inverted(option_word(word), inverted).find("invert=pan") != std::string::npos);

@@ -259,7 +259,13 @@ START_TEST(limits_beyond_the_servo_and_a_missing_chip_are_named) {
   ck_assert(ServoHead(gone).open(setup(), 0s).find("there is no PWM chip /tmp/no-such-chip. ") == 0);
   ServoOptions other = options(chip, "channel=7");  // is exported and does not appear
   ck_assert(ServoHead(other).open(setup(), 0s).find("channel 7 of the PWM chip " + chip.folder()) == 0);
+  ServoOptions fast = options(chip, "channel=0", "channel=1 pulse=500,2500");
+  assert_text(ServoHead(fast).check(), "");
+  fast.period = Time(2'500'000);
+  assert_text(ServoHead(fast).check(),
+              "a pulse of 2500 microseconds does not end before the next one (frequency and pulse)");
   ServoAxisOptions axis;
+  assert_text(parse_servo_axis("channel=0 invert=no", axis), "invert=no: invert takes no value");
   assert_text(parse_servo_axis("pulse=2000,1000 channel=0", axis),
               "pulse=2000,1000: SHORTEST,LONGEST in microseconds, 100 to 10000");
   assert_text(parse_servo_axis("", axis), "channel= is missing: the servo's channel of the PWM chip");

@@ -483,6 +483,8 @@ END_TEST
 START_TEST(options_that_cannot_be_are_named) {
   StepperAxisOptions axis;
   assert_text(parse_stepper_axis("", axis), "lines= is missing: name four coils, or STEP,DIR or STEP,DIR,EN");
+  assert_text(parse_stepper_axis("lines=1,2,3,4 enable-high=1", axis),
+              "enable-high=1: enable-high takes no value");
   assert_text(parse_stepper_axis("lines=1", axis), "lines=1: name four coils, or STEP,DIR or STEP,DIR,EN");
   assert_text(parse_stepper_axis("lines=1,,3,4", axis),
               "lines=1,,3,4: name four coils, or STEP,DIR or STEP,DIR,EN");

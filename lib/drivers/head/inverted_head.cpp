@@ -36,7 +36,7 @@ std::string parse_inverted(const OptionWord& word, Inverted& inverted) {
       return "invert=" + word.value + ": write invert=pan, invert=tilt, or invert for both axes";
     (axis == "pan" ? read.pan : read.tilt) = true;
   }
-  inverted = read;
+  inverted = {inverted.pan || read.pan, inverted.tilt || read.tilt};
   return {};
 }
 

@@ -15,8 +15,8 @@ struct Inverted {
   bool pan = false, tilt = false;
   bool any() const { return pan || tilt; }
 };
-// Of a word: invert=pan, invert=tilt, invert=pan,tilt, or invert for both. Returns what is wrong; then `inverted` is
-// unchanged.
+// Adds the axes of a word: invert=pan, invert=tilt, invert=pan,tilt, or invert for both. Returns what is wrong; then
+// `inverted` is unchanged.
 std::string parse_inverted(const OptionWord& word, Inverted& inverted);
 
 class InvertedHead final : public HeadDevice {

@@ -32,6 +32,12 @@ std::vector<OptionWord> option_words(std::string_view text) {
   return words;
 }
 
+std::string flag(const OptionWord& word, bool& on) {
+  if (word.has_value) return word.key + "=" + word.value + ": " + word.key + " takes no value";
+  on = true;
+  return {};
+}
+
 std::vector<std::string> split(std::string_view text, char separator) {
   std::vector<std::string> parts;
   for (std::size_t begin = 0;;) {

@@ -19,6 +19,8 @@ OptionWord option_word(std::string_view text);
 // The words of a text, parted by blanks; single quotes keep blanks together, and are left out.
 std::vector<std::string> quoted_words(std::string_view text);
 std::vector<OptionWord> option_words(std::string_view text);
+// A word without a value, which sets `on`. Returns what is wrong; then `on` is unchanged.
+std::string flag(const OptionWord& word, bool& on);
 // The parts of a list that a character parts; empty parts are kept.
 std::vector<std::string> split(std::string_view text, char separator);
 // The parts of a list with commas, without blanks around them; none of an empty text.

@@ -78,6 +78,10 @@ std::string ServoHead::check() const {
   if (pan.there() && tilt.there() && options_.pan.channel == options_.tilt.channel)
     return "pan and tilt have the same channel, " + std::to_string(options_.pan.channel) +
            ": each servo has its own";
+  for (const ServoAxisOptions* axis : {&options_.pan, &options_.tilt})
+    if (axis->channel >= 0 && axis->longest >= options_.period)
+      return "a pulse of " + std::to_string(axis->longest.count() / 1000) +
+             " microseconds does not end before the next one (frequency and pulse)";
   return {};
 }
 

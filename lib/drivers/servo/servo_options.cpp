@@ -51,8 +51,8 @@ std::string read(const OptionWord& word, ServoAxisOptions& axis) {
   } else if (word.key == "slew") {
     if (!number || *number <= 0 || *number > kMostDegrees) return start + "degrees a second, more than 0";
     axis.slew = radians(*number);
-  } else if (word.key == "invert" && !word.has_value) {
-    axis.invert = true;
+  } else if (word.key == "invert") {
+    return flag(word, axis.invert);
   } else {
     return "\"" + word.key + "\" is no option of a servo axis: channel, pulse, range, trim, slew, invert";
   }

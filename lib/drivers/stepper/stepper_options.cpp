@@ -58,12 +58,12 @@ std::string read(const OptionWord& word, StepperAxisOptions& axis) {
     if (!number || *number == 0) return wrong_number(word, "degrees, where the stop is; not 0");
     axis.hard_stop = true;
     axis.home_at = radians(*number);
-  } else if (word.key == "invert" && !word.has_value) {
-    axis.invert = true;
-  } else if (word.key == "enable-high" && !word.has_value) {
-    axis.enable_high = true;
-  } else if (word.key == "end-stop-low" && !word.has_value) {
-    axis.end_stop_low = true;
+  } else if (word.key == "invert") {
+    return flag(word, axis.invert);
+  } else if (word.key == "enable-high") {
+    return flag(word, axis.enable_high);
+  } else if (word.key == "end-stop-low") {
+    return flag(word, axis.end_stop_low);
   } else {
     return "\"" + word.key + "\" is no option of a stepper axis: lines, steps, max-rate, backlash, invert, " +
            "enable-high, end-stop, end-stop-low, hard-stop, homing-speed";

@@ -85,10 +85,17 @@ std::string V4l2Head::choose_mode() {
   if (!speed)
     return "the kernel reports a wrong minimum of the pan or tilt speed of " + options_.device +
            " (it is not minus the maximum): take mode=absolute or relative, or a newer kernel";
-  if (!speeds_known)
-    return "the speeds of " + options_.device +
-           " have no unit: name the degrees a second of the fastest ones (pan-speed=60 tilt-speed=40)";
-  return {};
+  return speeds_known ? "" : no_unit();
+}
+
+std::string V4l2Head::no_unit() const {
+  return "the speeds of " + options_.device +
+         " have no unit: name the degrees a second of the fastest ones (pan-speed=60 tilt-speed=40)";
+}
+
+std::string V4l2Head::check() const {
+  const bool known = options_.pan_speed > 0 && options_.tilt_speed > 0;
+  return options_.mode == Mode::speed && !known ? no_unit() : "";
 }
 
 std::string V4l2Head::check_range(const Axis& axis) const {

@@ -43,6 +43,7 @@ class V4l2Head final : public HeadDevice {
       : options_(std::move(options)), controls_(std::move(controls)) {}
   ~V4l2Head() override;
 
+  std::string check() const override;
   std::string open(const HeadSetup& setup, Time now) override;
   HeadAbilities abilities() const override;
   void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;
@@ -94,6 +95,7 @@ class V4l2Head final : public HeadDevice {
   void disconnect(Time now) noexcept;
   bool reconnect(Time now);
   std::string choose_mode();
+  std::string no_unit() const;
   bool drives(const Axis& axis) const;
   std::string check_range(const Axis& axis) const;
   void set_speed(Axis& axis, double speed);
