@@ -157,7 +157,6 @@ std::vector<MqttMessage> MqttReport::update(const MqttFrame& frame) {
   std::vector<MqttMessage> out;
   if (arrival_) distance_ = std::min(frame.arrival - *arrival_, parameters_.longest_distance);
   arrival_ = frame.arrival;
-  silent_ = false;
   if (frame.analysed) {
     tracks(frame, out);
     state(out);
@@ -226,8 +225,7 @@ std::vector<MqttMessage> MqttReport::fall_silent() {
 
 // The distance of a stream's frames outlasts its silence: that of a slow camera is known when its next frame comes.
 std::vector<MqttMessage> MqttReport::check(std::chrono::nanoseconds now) {
-  if (!arrival_ || silent_ || now - *arrival_ < parameters_.left + 2 * distance_) return {};
-  silent_ = true;
+  if (!arrival_ || now - *arrival_ < parameters_.left + 2 * distance_) return {};
   return fall_silent();
 }
 

@@ -120,7 +120,6 @@ class MqttReport {
   std::optional<std::chrono::nanoseconds>
       arrival_;                          // of the last frame; nullopt: none came since the stream began
   std::chrono::nanoseconds distance_{};  // to the one before
-  bool silent_ = false;                  // found by check() since the last frame
 };
 
 // An order that arrived at PREFIX/CAMERA/command/NAME.

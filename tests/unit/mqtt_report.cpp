@@ -177,6 +177,11 @@ START_TEST(motion_lasts_from_frame_to_frame_of_a_slow_camera) {
   back(4101);
   ck_assert(report.check(seconds(4104)).empty());
   ck_assert(tracks(report.check(seconds(4105))) == Words{"left 4"});
+  // Nor does a stream that has ended say anything of the next one.
+  report.end();
+  back(4110);
+  ck_assert(report.check(seconds(4111)).empty());
+  ck_assert(tracks(report.check(seconds(4112))) == Words{"left 4"});
 }
 END_TEST
 
