@@ -82,9 +82,9 @@ Promise.all([tried, posted]).then((all) => { document.title = all[0]; });
 
 
 class Visit:
-    def __init__(self, driver, port, host='127.0.0.1'):
+    def __init__(self, driver, port, host='127.0.0.1', camera=''):
         self.driver = driver
-        self.driver.get(f'http://{host}:{port}/')
+        self.driver.get(f'http://{host}:{port}/#{camera}')
 
     def wait(self, what, question):
         WebDriverWait(self.driver, PATIENCE, ignored_exceptions=(Exception,)).until(lambda _: question(), what)
@@ -292,7 +292,8 @@ def two_tabs(driver, page, port):
     driver.execute_script("window.holder = setInterval(() => send('turn 0.2 0'), 100)")
     first = driver.current_window_handle
     driver.switch_to.new_window('tab')
-    other = Visit(driver, port, 'localhost')  # an address of its own, so that its session is another one
+    # An address of its own, so that its session is another one; what it names is no encoding of a camera's name.
+    other = Visit(driver, port, 'localhost', '50%')
     other.log_in('operator', 'also long')
     other.wait('a picture', other.has_picture)
 

@@ -67,6 +67,10 @@ MISTAKES = [
      ['device-options', 'baud rate 12345']),
     (FRONT + '[camera.head]\ndriver = "visca"\ndevice = "serial:/dev/ttyS9"\ndevice-options = "emergency-stop=17"\n', 7,
      ['device-options', 'emergency-stop=17']),
+    (FRONT + '[camera.head]\ndriver = "visca"\ndevice = "serial:/dev/ttyS9"\ndevice-options = "emergency-stop=:17"\n', 7,
+     ['device-options', 'emergency-stop=:17']),
+    (FRONT + '[camera.head]\ndriver = "visca"\ndevice = "serial:/dev/ttyS9"\ndevice-options = "emergency-stop=gpiochip0:"\n', 7,
+     ['device-options', 'emergency-stop=gpiochip0:']),
     (FRONT + '[camera.recorder]\nfolder = "r"\nfile-name = "../%H"\n', 6, ['file-name', '../%H']),
     (FRONT + '[camera.recorder]\nfolder = "r"\ntrigger-zones = "1,2"\n', 6, ['trigger-zones', '1,2']),
     ('[[camera]]\nname = "a"\nkind = "v4l2"\ndevice = "/dev/video7"\n[[camera]]\nname = "b"\nkind = "v4l2"\n'

@@ -7,6 +7,7 @@ import hashlib
 import hmac
 import http.server
 import json
+import os
 import pathlib
 import random
 import re
@@ -229,10 +230,13 @@ def devices(program, port, folder):
     """A screen without a keyboard: its token is made on the machine, kept as a hash, and counts until it is revoked."""
     def tool(*words):
         return subprocess.run([program, *words, folder / 'robot.toml'], capture_output=True, text=True, timeout=PATIENCE, check=False)
+    if os.geteuid() == 0:  # an administrator's, for a robot that runs as another user
+        os.chown(folder / 'state', 65534, 65534)
     made = tool('--make-device-token', '--device', 'screen')
     token = re.search(r'#device=([0-9a-f]{64})\n', made.stdout)[1]
     assert made.returncode == 0 and made.stdout.count(token) == 2, made
     kept = folder / 'state' / 'devices'
+    assert (kept.stat().st_uid, kept.stat().st_gid) == ((folder / 'state').stat().st_uid, (folder / 'state').stat().st_gid)
     assert kept.stat().st_mode & 0o777 == 0o600 and token not in kept.read_text() and 'viewer screen ' in kept.read_text()
     assert tool('--make-device-token', '--device', 'screen').returncode == 1
     assert tool('--make-device-token', '--device', 'x', '--role', 'owner').returncode == 1
