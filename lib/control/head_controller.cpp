@@ -54,6 +54,9 @@ void HeadController::open(std::unique_ptr<drivers::HeadRunner> runner, const dri
   selector_.reset();
   selector_.follow(0);
   history_.clear();
+  dead_time_.reset();
+  base_yaw_.reset();
+  taken_.reset();
   watchdog_.rest();
   manual_ = {};
   faulty_ = silent_ = ended_ = homing_ = sees_turns_ = false;
@@ -152,12 +155,25 @@ Pose HeadController::running(Pose pose) const {
   return pose;
 }
 
-// Shifts the driver's poses by their correction.
+// Shifts the driver's poses by their correction and by what was learnt of the dead time.
 void HeadController::remember(std::vector<Pose>& poses) {
+  const Time late = dead_time_.late();
   for (Pose& pose : poses) {
     correction_.add(pose);
+    pose.from += late;
+    if (pose.until != motion::kNever) pose.until += late;
     history_.add(pose);
   }
+}
+
+// When a command that is given at `now` takes effect, as told and as learnt.
+HeadController::Time HeadController::effect_of(Time now) const {
+  return now + setup_.latency + dead_time_.late();
+}
+
+std::optional<Turn> HeadController::picture_turn(const Frame& frame) const {
+  if (!frame.motion || simulated_) return std::nullopt;  // the poses of a simulated head need no picture
+  return head_turn(*frame.motion, frame.lens, correction_.position().value_or(motion::PanTilt{}));
 }
 
 // Returns the command of the manual override, given at `now`.
@@ -180,12 +196,15 @@ void HeadController::correct(const Frame& frame, Time now, DeferredNotifications
   sees_turns_ = sees_turns_ || (frame.motion && frame.lens.known());
   const auto is_lost = [this] { return sees_turns_ && correction_.lost(); };
   const bool lost = is_lost();
-  const Pose ahead = history_.at(now + setup_.latency);
-  const auto turn =
-      frame.motion ? head_turn(*frame.motion, frame.lens, correction_.position().value_or(motion::PanTilt{}))
-                   : std::nullopt;
+  const Time taken = frame.running + epoch_;
+  const auto turn = picture_turn(frame);
+  if (turn && taken_ && correction_.position())
+    dead_time_.add(*taken_, taken, turn->yaw, correction_.reckoned(), setup_.latency);
+  taken_ = taken;
+  const Time late = dead_time_.late();
+  correction_.set_dead_time(setup_.latency + late);
   const bool base_known = frame.motion && base_is_known(*frame.motion);
-  if (correction_.on_frame(frame.running + epoch_, ahead, turn, setup_.limits, base_known)) {
+  if (correction_.on_frame(taken - late, history_.at(effect_of(now)), turn, setup_.limits, base_known)) {
     confine_law();
     runner_->limit(now, correction_.limits(setup_.limits));
   }
@@ -308,6 +327,21 @@ HeadController::Answer HeadController::announce(Time at, DeferredNotifications& 
   return answer;
 }
 
+Moment HeadController::moment_of(const Frame& frame, Time now) {
+  const Time taken = frame.repeats.value_or(frame.running) + epoch_;
+  const auto estimate = correction_.position();
+  Pose capture = frame.capture && !estimate ? *frame.capture : history_.at(taken);
+  if (estimate) capture.pan.position = estimate->pan;
+  if (estimate) capture.tilt.position = estimate->tilt;
+  const double reported = frame.motion ? frame.motion->base_yaw : 0;
+  const double reckoned = correction_.driver_pose(taken - dead_time_.late()).pan.position;
+  base_yaw_.on_frame(taken, reported, picture_turn(frame),
+                     {capture.pan.position, reckoned, motion::seconds(setup_.latency)});
+  const Time effect = effect_of(now);
+  return {
+      capture, history_.at(effect), {motion::seconds(taken), motion::seconds(effect)}, base_yaw_.at(effect)};
+}
+
 HeadCommand HeadController::decide(const Frame& frame, Time now, DeferredNotifications& out) {
   HeadCommand command{now, {}, {}};
   if (halted_) return command;
@@ -316,16 +350,11 @@ HeadCommand HeadController::decide(const Frame& frame, Time now, DeferredNotific
     report_manual(now, out);
     return manual_at(now);
   }
-  const Time taken = frame.repeats.value_or(frame.running) + epoch_;
-  const auto estimate = correction_.position();
-  Pose capture = frame.capture && !estimate ? *frame.capture : history_.at(taken);
-  if (estimate) capture.pan.position = estimate->pan;
-  if (estimate) capture.tilt.position = estimate->tilt;
-  const Pose ahead = history_.at(now + setup_.latency);
+  const Moment moment = moment_of(frame, now);
   const TargetSelector::Selection selection =
-      selector_.on_frame(*frame.seen, frame.running, capture.pan.position);
+      selector_.on_frame(*frame.seen, frame.running, moment.capture.pan.position);
   if (selection.lost != 0) out.add(Lost{selection.lost});
-  const Command axes = law_.update(selection.goal, frame.lens, capture, ahead);
+  const Command axes = law_.update(selection.goal, frame.lens, moment);
   command.pan = axes.pan;
   command.tilt = axes.tilt;
   if (!faulty_) report(state_of(axes), selection.reason, now, out);
@@ -403,8 +432,10 @@ void HeadController::on_decision(const FusionDecision& decision, Time at, Deferr
   const auto selection = selector_.on_decision(decision);
   if (!selection) return;
   const Time now = head_time(at);
-  const Pose ahead = history_.at(now + setup_.latency);
-  const Command command = law_.update(selection->goal, {}, ahead, ahead);
+  const Time effect = effect_of(now);
+  const Pose ahead = history_.at(effect);
+  const double then = motion::seconds(effect);
+  const Command command = law_.update(selection->goal, {}, {ahead, ahead, {then, then}, {}});
   if (!faulty_) report(state_of(command), selection->reason, now, out);
   order({now, command.pan, command.tilt});
 }

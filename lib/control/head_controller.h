@@ -15,6 +15,8 @@
 #include <vector>
 
 #include "control/deferred_notifications.h"
+#include "control/following/base_yaw.h"
+#include "control/following/dead_time.h"
 #include "control/law.h"
 #include "control/manual_override.h"
 #include "control/pose_correction.h"
@@ -100,6 +102,10 @@ class HeadController {
   Time earliest(std::optional<Time> now);
   void confine_law();
   void remember(std::vector<motion::Pose>& poses);
+  Time effect_of(Time now) const;
+  // Of the picture since the frame before, less the reported turn of the base.
+  std::optional<Turn> picture_turn(const Frame& frame) const;
+  Moment moment_of(const Frame& frame, Time now);
   void correct(const Frame& frame, Time now, DeferredNotifications& out);
   drivers::HeadCommand manual_at(Time now) const;
   void order(drivers::HeadCommand command);
@@ -128,6 +134,9 @@ class HeadController {
   Law law_;
   motion::PoseHistory history_;  // in the head's time
   PoseCorrection correction_;    // of a head that the clock drives
+  DeadTime dead_time_;           // of the same
+  BaseYaw base_yaw_;             // below the head
+  std::optional<Time> taken_;    // the frame before, in the head's time
   Watchdog watchdog_;
   TargetSelector selector_;
   ManualOverride manual_;

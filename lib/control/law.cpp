@@ -37,43 +37,48 @@ void Law::set_options(const LawOptions& options) {
 
 void Law::reset() {
   last_ = fusion::Action::hold;
-  pan_moving_ = tilt_moving_ = sweeping_right_ = false;
+  pan_.reset();
+  tilt_.reset();
+  left_.reset();
+  sweeping_right_ = false;
 }
 
-motion::AxisCommand Law::approach(double target, double position, bool& moving) const {
-  const double error = std::abs(target - position);
-  moving = error > (moving ? options_.dead_band_stop : options_.dead_band_start);
-  return moving ? go(target, options_.gain * error) : motion::AxisCommand{};
-}
-
-Command Law::track(vision::Point target, const vision::Lens& lens, const motion::Pose& capture,
-                   const motion::Pose& ahead) {
+Command Law::track(vision::Point target, const vision::Lens& lens, const Moment& moment) {
+  const motion::Pose &capture = moment.capture, &ahead = moment.ahead;
   const vision::Direction seen = lens.direction(target, capture.pan.position, capture.tilt.position);
-  if (!std::isfinite(seen.bearing) || !std::isfinite(seen.elevation)) return {};
+  const bool placed = std::isfinite(ahead.pan.position) && std::isfinite(ahead.tilt.position);
+  if (!std::isfinite(seen.bearing) || !std::isfinite(seen.elevation) || !placed) return {};
+  const FollowedAxis::Parameters parameters{options_.response, options_.gain, options_.dead_band_start,
+                                            options_.dead_band_stop};
   Command command;
   command.state = State::tracking;
-  const motion::AxisLimits& pan = options_.limits.pan;
+  const motion::AxisLimits &limits = options_.limits.pan, &tilt_limits = options_.limits.tilt;
   const double straight = capture.pan.position + sensing::wrap(seen.bearing - capture.pan.position);
-  double bearing = straight;
-  if (!pan.holds(straight)) {
-    const double stop = pan.clamp(straight);
-    const motion::Reach round = reach(seen.bearing, stop, pan);
-    const bool worth = !round.limited && std::abs(straight - stop) > kGoRound;
-    bearing = worth ? round.position : stop;
+  FollowedAxis::Aim pan = pan_.observe(straight, moment.base, moment.times, parameters);
+  FollowedAxis::Aim tilt = tilt_.observe(seen.elevation, {}, moment.times, parameters);
+  left_ = pan.position + pan.rate * moment.times.horizon();
+  if (!limits.holds(pan.position)) {
+    const double stop = limits.clamp(pan.position);
+    const motion::Reach round = reach(pan.position, stop, limits);
+    const bool worth = !round.limited && std::abs(pan.position - stop) > kGoRound;
+    pan.move_to(worth ? round.position : stop);
     command.limited = !worth;
   }
-  const double height = options_.limits.tilt.clamp(seen.elevation);
-  command.limited = command.limited || std::abs(height - seen.elevation) > options_.dead_band_start;
-  command.pan = approach(bearing, ahead.pan.position, pan_moving_);
-  command.tilt = approach(height, ahead.tilt.position, tilt_moving_);
+  if (!tilt_limits.holds(tilt.position)) {
+    const double stop = tilt_limits.clamp(tilt.position);
+    command.limited = command.limited || std::abs(stop - tilt.position) > options_.dead_band_start;
+    tilt.move_to(stop);
+  }
+  command.pan = pan_.command(pan, ahead.pan, limits, moment.times, parameters);
+  command.tilt = tilt_.command(tilt, ahead.tilt, tilt_limits, moment.times, parameters);
   return command;
 }
 
 Command Law::turn(double direction, const motion::Pose& ahead) const {
   Command command;
   command.state = State::turning;
-  command.pan = {motion::AxisCommand::Kind::velocity, direction * options_.turn_speed, 0};
   const motion::AxisLimits& pan = options_.limits.pan;
+  command.pan = {motion::AxisCommand::Kind::velocity, direction * pan.speed, 0};
   command.limited =
       direction > 0 ? ahead.pan.position >= pan.to - kThere : ahead.pan.position <= pan.from + kThere;
   return command;
@@ -88,11 +93,13 @@ Command Law::search(const sensing::Interval& sector, const motion::Pose& ahead) 
   const double to = pan.clamp(std::max(sector.from, sector.to));
   command.limited = from != std::min(sector.from, sector.to) || to != std::max(sector.from, sector.to);
   const double position = ahead.pan.position;
-  if (last_ != fusion::Action::search)
-    sweeping_right_ = to - position < position - from;  // the nearer edge first
+  if (last_ != fusion::Action::search)  // where the target left, else the nearer edge first
+    sweeping_right_ = left_ ? *left_ > position : to - position < position - from;
+  left_.reset();
   if (position >= to - kThere) sweeping_right_ = false;
   if (position <= from + kThere) sweeping_right_ = true;
-  command.pan = go(sweeping_right_ ? to : from, options_.turn_speed);
+  const bool outside = position < from || position > to;
+  command.pan = go(sweeping_right_ ? to : from, outside ? pan.speed : options_.turn_speed);
   return command;
 }
 
@@ -103,15 +110,21 @@ Command Law::zero() const {
   return command;
 }
 
-Command Law::update(const Goal& goal, const vision::Lens& lens, const motion::Pose& capture,
-                    const motion::Pose& ahead) {
+Command Law::update(const Goal& goal, const vision::Lens& lens, const Moment& moment) {
   using fusion::Action;
   Command command;
+  const motion::Pose& ahead = moment.ahead;
   if (goal.action == Action::track && goal.target) {
-    if (last_ != Action::track)
-      pan_moving_ = tilt_moving_ =
-          true;  // a new target is centred: the start of the dead band does not apply
-    command = track(*goal.target, lens, capture, ahead);
+    const bool other = std::exchange(track_, goal.track) != goal.track;
+    if (other) {  // its motion is not that of the last one
+      pan_.reset();
+      tilt_.reset();
+    }
+    if (other || last_ != Action::track) {
+      pan_.begin();
+      tilt_.begin();
+    }
+    command = track(*goal.target, lens, moment);
   } else if (goal.action == Action::turn_left || goal.action == Action::turn_right) {
     command = turn(goal.action == Action::turn_right ? 1 : -1, ahead);
   } else if (goal.action == Action::search) {

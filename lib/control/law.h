@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The control law: from a goal (an action, a point of the picture) to the commands of the two axes.
 //
-// Here the law is proportional:
-//   target  = the pose when the frame was taken, turned by the angle of the point from the optical axis
-//   error   = target - the position when the command takes effect, which follows from the commands given so far
-//   command = go to the target, at no more than gain x |error|
-// The prediction removes the dead time from the loop, and a head without further commands ends at the target. An axis
-// at rest starts when the error exceeds the start of the dead band and rests again when it is below its stop: with one
-// threshold for both, noise on the boxes makes a head hunt (the test in tests/unit/law.cpp counts the reversals).
+// A target is followed in the world's frame, predicted to the time at which the command takes effect
+// (followed_axis.h). Turns towards a known direction are made at the head's own full speed; what is searched and the way
+// back to zero at the turn speed. A search begins where the last target left.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
+#include "control/following/followed_axis.h"
 #include "fusion/rules.h"
 #include "motion/pose.h"
 #include "sensing/sectors.h"
@@ -22,10 +19,12 @@ namespace cerberus::control {
 
 struct LawOptions {
   motion::Limits limits;
-  double turn_speed = sensing::radians(40);       // radians a second, for turning, searching and returning
-  double gain = 4;                                // radians a second for each radian of error
-  double dead_band_start = sensing::radians(3);   // radians; never less than dead_band_stop
-  double dead_band_stop = sensing::radians(0.7);  // radians
+  double turn_speed = sensing::radians(40);  // radians a second, for searching and returning
+  Response response = Response::normal;
+  // Of FollowedAxis::Parameters.
+  double gain = FollowedAxis::Parameters{}.gain;
+  double dead_band_start = FollowedAxis::Parameters{}.dead_band_start;  // never less than dead_band_stop
+  double dead_band_stop = FollowedAxis::Parameters{}.dead_band_stop;
 };
 
 // The goal of the head for one frame.
@@ -33,6 +32,7 @@ struct Goal {
   fusion::Action action = fusion::Action::hold;
   std::optional<vision::Point> target;  // of Action::track, frame pixels; none: hold
   sensing::Interval sector{0, 0};       // of Action::search, pan angles
+  std::uint32_t track = 0;              // the target's; another one begins anew
 };
 
 enum class State : std::uint8_t { holding, tracking, turning, searching, zeroing };
@@ -43,6 +43,14 @@ struct Command {
   bool limited = false;  // the goal lies beyond a stop; the head goes to the nearest position
 };
 
+// The head at the two times that a command connects.
+struct Moment {
+  motion::Pose capture;       // when the frame was taken
+  motion::Pose ahead;         // when the command takes effect
+  FollowedAxis::Times times;  // these times
+  BaseTurn base;
+};
+
 class Law {
  public:
   void set_options(const LawOptions& options);
@@ -50,23 +58,21 @@ class Law {
   // Clears the state.
   void reset();
 
-  // Computes the command for one frame. capture: the pose when the frame was taken. ahead: the pose when this command
-  // takes effect. Without a known lens, tracking is impossible and the command is hold. Deterministic; allocates
-  // nothing.
-  Command update(const Goal& goal, const vision::Lens& lens, const motion::Pose& capture,
-                 const motion::Pose& ahead);
+  // Computes the command for one frame. Without a known lens, tracking is impossible and the command is hold.
+  // Deterministic; allocates nothing.
+  Command update(const Goal& goal, const vision::Lens& lens, const Moment& moment);
 
  private:
-  motion::AxisCommand approach(double target, double position, bool& moving) const;
-  Command track(vision::Point target, const vision::Lens& lens, const motion::Pose& capture,
-                const motion::Pose& ahead);
+  Command track(vision::Point target, const vision::Lens& lens, const Moment& moment);
   Command turn(double direction, const motion::Pose& ahead) const;
   Command search(const sensing::Interval& sector, const motion::Pose& ahead);
   Command zero() const;
 
   LawOptions options_;
   fusion::Action last_ = fusion::Action::hold;
-  bool pan_moving_ = false, tilt_moving_ = false;
+  FollowedAxis pan_, tilt_;
+  std::optional<double> left_;  // pan angle at which the last target left
+  std::uint32_t track_ = 0;
   bool sweeping_right_ = false;
 };
 

@@ -22,10 +22,13 @@ class PoseCorrection {
 
   // The head is at `start`. dead_time: from a command until the head obeys.
   void reset(const motion::Pose& start, Time dead_time);
+  void set_dead_time(Time dead_time) { dead_time_ = dead_time; }
   // Records the driver's pose and adds the shift to it.
   void add(motion::Pose& pose);
   // The driver's own pose at `time`, as recorded.
   motion::Pose driver_pose(Time time) const { return raw_.at(time); }
+  // The driver's own poses, as recorded.
+  const motion::PoseHistory& reckoned() const { return raw_; }
   // Adds a frame that was taken at `taken` (the head's time). ahead: the estimated pose when a command takes effect.
   // turn: of the picture since the frame before. Returns true if narrowed() and limits() of `limits` have changed by
   // so much that the driver must be given them.

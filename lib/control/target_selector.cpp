@@ -23,8 +23,12 @@ std::string reason_of(const fusion::Decision& decision) {
 TargetSelector::Selection selection_of(const fusion::Decision& decision,
                                        std::span<const fusion::Track> tracks) {
   TargetSelector::Selection selection;
-  selection.goal = {.action = decision.action, .target = {}, .sector = decision.sector};
-  if (decision.action == fusion::Action::track) selection.goal.target = middle_of(tracks, decision.target);
+  selection.goal.action = decision.action;
+  selection.goal.sector = decision.sector;
+  if (decision.action == fusion::Action::track) {
+    selection.goal.target = middle_of(tracks, decision.target);
+    selection.goal.track = decision.target;
+  }
   selection.reason = reason_of(decision);
   return selection;
 }
@@ -44,7 +48,7 @@ void TargetSelector::apply_override(const Observation& frame, motion::Time time,
   following_ = answer == here;
   if (decided_elsewhere_ && frame.fusion) return;
   if (following_) {
-    selection.goal = {.action = fusion::Action::track, .target = middle};
+    selection.goal = {.action = fusion::Action::track, .target = middle, .track = id};
     selection.reason = "follows the chosen track " + std::to_string(id);
   } else if (answer == awaited && selection.goal.action == fusion::Action::track) {
     selection.goal = {};

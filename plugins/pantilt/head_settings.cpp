@@ -22,6 +22,17 @@ GType target_type() {
   return type;
 }
 
+GType response_type() {
+  using control::Response;
+  static const GEnumValue values[] = {
+      {static_cast<int>(Response::calm), "Moves least, lags most", "calm"},
+      {static_cast<int>(Response::normal), "Follows a walker within one and a half degrees", "normal"},
+      {static_cast<int>(Response::fast), "Follows closest, passes on more noise", "fast"},
+      {0, nullptr, nullptr}};
+  static const GType type = g_enum_register_static("CerberusPanTiltResponse", values);
+  return type;
+}
+
 const Property<HeadSettings> kProperties[] = {
     property("driver", &HeadSettings::driver,
              "What drives the head: simulated, scripted, external, visca, pelco-d, onvif, stepper-gpio, "
@@ -82,20 +93,18 @@ const Property<HeadSettings> kProperties[] = {
     property("start-tilt", &HeadSettings::start_tilt, -kMostDegrees, kMostDegrees,
              "Where a simulated head looks at the start, degrees, positive up")
         .read_at_start(),
-    property("turn-speed", &HeadSettings::turn_speed, 0, kMostDegrees,
-             "Degrees a second at which the head turns, searches and returns to zero; 0 = the default"),
+    property(
+        "turn-speed", &HeadSettings::turn_speed, 0, kMostDegrees,
+        "Degrees a second at which the head searches and returns to zero; it turns to a known direction at "
+        "max-speed; 0 = the default"),
     property("max-speed", &HeadSettings::max_speed, kLeast, sensing::degrees(motion::kMostSpeed),
              "Highest speed of the head in degrees a second"),
     property("max-acceleration", &HeadSettings::max_acceleration, kLeast,
              sensing::degrees(motion::kMostAcceleration),
              "Highest acceleration of the head in degrees a second squared"),
-    property("gain", &HeadSettings::gain, 0, 100,
-             "Speed with which a target is followed, in degrees a second for each degree that it is off the "
-             "middle; higher follows closer and passes on more noise; 0 = the default"),
-    property("dead-band-start", &HeadSettings::dead_band_start, 0, 90,
-             "A head at rest starts to follow when the target is this many degrees off the middle"),
-    property("dead-band-stop", &HeadSettings::dead_band_stop, 0, 90,
-             "A head that follows rests when the target is less than this many degrees off the middle"),
+    property("response", &HeadSettings::response, response_type,
+             "How a target is followed: calm moves least and lags most, fast follows closest and passes on "
+             "more noise"),
     property("latency", &HeadSettings::latency,
              "Nanoseconds from a command until it takes effect, at most 5 s")
         .read_at_start(),
@@ -153,9 +162,7 @@ void copy_limits(const HeadSettings& from, HeadSettings& to) {
 control::LawOptions law_options(const HeadSettings& s) {
   return {.limits = head_limits(s),
           .turn_speed = radians(s.turn_speed),
-          .gain = s.gain,
-          .dead_band_start = radians(s.dead_band_start),
-          .dead_band_stop = radians(s.dead_band_stop)};
+          .response = static_cast<control::Response>(s.response)};
 }
 
 fusion::FuserOptions fuser_options(const HeadSettings& s) {

@@ -24,8 +24,7 @@ struct HeadSettings {
   double pan_min = -170, pan_max = 170, tilt_min = -45, tilt_max = 45;
   double start_pan = 0, start_tilt = 0;
   double turn_speed = 40, max_speed = 90, max_acceleration = 600;
-  double gain = control::LawOptions{}.gain;
-  double dead_band_start = 3, dead_band_stop = 0.7;
+  int response = static_cast<int>(control::Response::normal);
   guint64 latency = 60 * GST_MSECOND;
   double step_size = 0, backlash = 0, noise = 0;
   int seed = 1;

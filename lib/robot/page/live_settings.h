@@ -17,7 +17,7 @@ struct LiveSetting {
 inline constexpr std::array<LiveSetting, 3> kLiveSettings{{
     {"quality", "jpeg", "quality", "Quality of the pictures, %", 10, 100, 1, false},
     {"return-delay", "fusion", "return-delay", "Return to zero after, s", 0, 600, 1e9, true},
-    {"turn-speed", "head", "turn-speed", "Speed of a sensor's turn, degrees/s", 1, 90, 1, true},
+    {"turn-speed", "head", "turn-speed", "Speed of a search, degrees/s", 1, 90, 1, true},
 }};
 
 inline const LiveSetting* find_live_setting(std::string_view name) {

@@ -76,7 +76,7 @@ constexpr Option kHead[] = {
     {"max-speed", K::number, 0.001, 3600},
     {"max-acceleration", K::number, 0.001, 1e6},
     {"turn-speed", K::number, 0, 3600},
-    {"gain", K::number, 0, 100},
+    {"response", K::choice, 0, 0, "calm normal fast"},
     {"latency", K::seconds, 0, 5},
     {"zoom-table", K::text},
     {"lock-zoom", K::number, -1, 2},
