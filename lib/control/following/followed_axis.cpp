@@ -66,7 +66,7 @@ double slowed(double horizon, double interval) {
 FollowedAxis::Aim FollowedAxis::observe(double angle, const BaseTurn& base, const Times& times,
                                         const Parameters& parameters) {
   const Constants& c = kConstants;
-  interval_ = std::clamp(times.taken - taken_, 0.0, TargetFilter::kPause);
+  interval_ = quick_.known() ? std::clamp(times.taken - taken_, 0.0, TargetFilter::kPause) : 0;
   taken_ = times.taken;
   const double world = angle + base.taken, v = quick_.known() ? quick_.rate() : 0;
   // Its bandwidth goes with the fourth root of its density. Rare pictures slow a filter by themselves.
