@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // From frames, decisions and manual commands to the commands of a driver. The driver is a simulated head whose commands
 // are recorded; the lens has 90 degrees over 640x480, so that f = 320 and 320 pixels right of the middle are 45 degrees.
-// Limits: 90 degrees a second, 400 degrees a second squared. A turn at 40 degrees a second takes 0.1 s and 2 degrees to
-// reach its speed, and as much to brake.
+// Limits: 400 degrees a second squared; 40 degrees a second of pan, which takes 0.1 s and 2 degrees to reach, and as much
+// to brake, and 90 of tilt.
 #include "control/head_controller.h"
 
 #include <check.h>
@@ -91,6 +91,7 @@ class RecordedHead : public drivers::Head {
 HeadSetup usual_setup() {
   HeadSetup setup;
   setup.limits.pan.acceleration = setup.limits.tilt.acceleration = radians(400);
+  setup.limits.pan.speed = radians(40);
   return setup;
 }
 
@@ -198,6 +199,9 @@ void assert_goes(const AxisCommand& command, double position, double speed) {
   ck_assert_double_eq_tol(degrees(command.speed), speed, 1e-6);
 }
 
+// Speed with which a head at rest sets out for a target: 40 ms of its acceleration.
+constexpr double kSetsOut = 16;
+
 void assert_turns(const AxisCommand& command, double speed) {
   ck_assert_int_eq(static_cast<int>(command.kind), static_cast<int>(Kind::velocity));
   ck_assert_double_eq_tol(degrees(command.value), speed, 1e-6);
@@ -227,8 +231,8 @@ START_TEST(a_target_is_reckoned_from_the_pose_on_the_frame) {
   HeadController::Frame frame = Rig::with(0s, Action::track, 45);
   frame.capture = pointing(10);
   rig.process(frame);
-  // At 10 degrees the target is 45 to the right: 55. The head is at 0: gain 4 times 55.
-  assert_goes(rig.command().pan, 55, 4 * 55);
+  // At 10 degrees the target is 45 to the right: 55.
+  assert_goes(rig.command().pan, 55, kSetsOut);
   ck_assert(holds(rig.command().tilt));
   assert_time(rig.command().time, 0s);
   rig.assert_status(HeadState::tracking, "rule 3 (left): track 4");
@@ -246,9 +250,10 @@ START_TEST(without_a_pose_on_the_frame_the_head_s_own_pose_at_that_time_counts) 
     if (repeats) second.repeats = 500ms;
     rig.process(second);
     // After 1 s the head is at 2 + 0.9 x 40 = 38 degrees, the target in the middle of the picture too: nothing to do.
-    // A frame that repeats the picture of 0.5 s shows a target at 2 + 0.4 x 40 = 18.
+    // A frame that repeats the picture of 0.5 s shows a target at 2 + 0.4 x 40 = 18: the head brakes before it turns
+    // round, from 40 by 40 ms of its acceleration.
     if (repeats)
-      assert_goes(rig.command().pan, 18, 4 * 20);
+      assert_goes(rig.command().pan, 38 + .3 * (40 - 16), 40 - 16);
     else
       ck_assert(holds(rig.command().pan));
   }
@@ -262,10 +267,11 @@ START_TEST(the_error_is_that_at_the_time_when_the_command_takes_effect) {
   HeadController::Frame first = Rig::with(0s, Action::turn_right);
   first.length = 1s;
   rig.process(first);
-  rig.process(Rig::with(1s, Action::track, 10));
-  // The turn began at 0.06 s. At 1 s the head is at 2 + 0.84 x 40 = 35.6: the target is at 45.6. The command takes
-  // effect at 1.06 s, but published poses, which end at 1 s, are not touched: the head is then at 38.
-  assert_goes(rig.command().pan, 45.6, 4 * (45.6 - 38));
+  rig.process(Rig::with(1s, Action::track, 5));
+  // The turn began at 0.06 s. At 1 s the head is at 2 + 0.84 x 40 = 35.6: the target is at 40.6. The command takes
+  // effect at 1.06 s, but published poses, which end at 1 s, are not touched: the head is then at 38, and 2.6 degrees are
+  // left. The speed approaches the one for them, 6.5 x 2.6 = 16.9, by 16 a second for 40 ms.
+  assert_goes(rig.command().pan, 40.6, 40 - .04 * 16 * (40 - 6.5 * 2.6));
 }
 END_TEST
 
@@ -275,26 +281,32 @@ START_TEST(within_the_dead_band_the_head_rests) {
   law.dead_band_start = radians(3);
   law.dead_band_stop = radians(1);
   rig.controller.set_options(law, {}, {});
-  rig.process(Rig::with(0s, Action::track, 0.9));
-  ck_assert(holds(rig.command().pan));
-  rig.process(Rig::with(40ms, Action::track, 2.9));
-  ck_assert(holds(rig.command().pan));
-  rig.process(Rig::with(80ms, Action::track, 3.1));
-  assert_goes(rig.command().pan, 3.1, 4 * 3.1);
+  Time now{};
+  const auto frames = [&](int n, double from, double to) {  // the first command that moves the head ends it
+    for (int k = 0; k < n && (now == 0s || holds(rig.command().pan)); ++k, now += 40ms)
+      rig.process(Rig::with(now, Action::track, from + (to - from) * k / n));
+    return holds(rig.command().pan);
+  };
+  ck_assert(frames(25, 0.9, 0.9));
+  ck_assert(frames(100, 0.9, 2.5));
+  ck_assert(!frames(100, 2.5, 4.5));
 }
 END_TEST
 
-START_TEST(search_turn_and_return_to_zero_become_commands_at_turn_speed) {
+START_TEST(a_turn_is_made_at_full_speed_and_search_and_return_to_zero_at_turn_speed) {
   Rig rig;
+  LawOptions law;
+  law.turn_speed = radians(30);
+  rig.controller.set_options(law, {}, {});
   rig.process(Rig::with(0s, Action::search));
-  assert_goes(rig.command().pan, -20, 40);  // the nearer edge first
+  assert_goes(rig.command().pan, -20, 30);  // the nearer edge first
   rig.assert_status(HeadState::searching, "rule 3 (left): search");
   rig.process(Rig::with(40ms, Action::turn_left));
   assert_turns(rig.command().pan, -40);
   rig.assert_status(HeadState::turning, "rule 3 (left): turn-left");
   rig.process(Rig::with(80ms, Action::zero));
-  assert_goes(rig.command().pan, 0, 40);
-  assert_goes(rig.command().tilt, 0, 40);
+  assert_goes(rig.command().pan, 0, 30);
+  assert_goes(rig.command().tilt, 0, 30);
   rig.assert_status(HeadState::zeroing, "rule 3 (left): zero");
   rig.process(Rig::with(120ms, Action::hold));
   ck_assert(holds(rig.command().pan) && holds(rig.command().tilt));
@@ -318,7 +330,7 @@ START_TEST(without_fusion_a_track_is_followed_and_the_head_then_returns_to_zero)
   HeadController::Frame seen = Rig::with(0s, Action::hold, 20);
   seen.seen->fusion.reset();
   rig.process(seen);
-  assert_goes(rig.command().pan, 20, 4 * 20);
+  assert_goes(rig.command().pan, 20, kSetsOut);
   rig.process(Rig::empty(990ms));  // return-delay, 1 s, is not over
   ck_assert(holds(rig.command().pan));
   rig.process(Rig::empty(5s));
@@ -335,7 +347,7 @@ START_TEST(a_target_beyond_a_limit_is_approached_to_the_limit) {
   options.setup.limits.pan.to = radians(30);
   Rig rig(options);
   rig.process(Rig::with(0s, Action::track, 45));
-  assert_goes(rig.command().pan, 30, 4 * 30);
+  assert_goes(rig.command().pan, 30, kSetsOut);
   rig.assert_status(HeadState::limited, "rule 3 (left): track 4");
   Rig other(options);
   other.process(Rig::with(0s, Action::turn_left));
@@ -355,7 +367,7 @@ START_TEST(new_limits_reach_the_driver_at_once_and_the_law_with_the_next_frame) 
   assert_time(rig.record->limits[0].first, 1040ms);  // poses are published until then
   ck_assert(rig.record->limits[0].second == limits);
   rig.process(Rig::with(2s, Action::track, 45));
-  assert_goes(rig.command().pan, 25, 4 * 25);
+  assert_goes(rig.command().pan, 25, kSetsOut);
 }
 END_TEST
 
@@ -366,7 +378,7 @@ START_TEST(refused_limits_leave_the_old_ones_in_force) {
   ck_assert(!rig.controller.set_limits(limits, {}).empty());
   ck_assert(rig.record->limits.empty());
   rig.process(Rig::with(0s, Action::track, -45));
-  assert_goes(rig.command().pan, -45, 4 * 45);
+  assert_goes(rig.command().pan, -45, kSetsOut);
 }
 END_TEST
 
@@ -393,7 +405,7 @@ START_TEST(a_manual_command_takes_precedence_until_automatic) {
   ck_assert(rig.record->commands.empty());  // without a clock it is given with the next frame
   rig.assert_status(HeadState::manual, "manual command: move");
   rig.process(Rig::with(0s, Action::turn_left));
-  assert_goes(rig.command().pan, 30, 90);
+  assert_goes(rig.command().pan, 30, 40);
   assert_goes(rig.command().tilt, -10, 90);
   ck_assert(rig.controller.stop({}, rig.out));
   rig.process(Rig::with(40ms, Action::turn_left));
@@ -410,11 +422,11 @@ START_TEST(a_relative_move_adds_to_the_last_commanded_position) {
   ck_assert(rig.controller.move(radians(10), 0, true, {}, rig.out));
   ck_assert(rig.controller.move(radians(15), radians(5), true, {}, rig.out));
   rig.process(Rig::with(0s, Action::hold));
-  assert_goes(rig.command().pan, 25, 90);
+  assert_goes(rig.command().pan, 25, 40);
   assert_goes(rig.command().tilt, 5, 90);
   ck_assert(!rig.controller.move(kNan, 0, false, {}, rig.out));
   rig.process(Rig::with(40ms, Action::hold));
-  assert_goes(rig.command().pan, 25, 90);
+  assert_goes(rig.command().pan, 25, 40);
 }
 END_TEST
 
@@ -424,7 +436,7 @@ START_TEST(the_chosen_track_takes_precedence_over_fusion_and_ends_a_manual_comma
   rig.controller.move(radians(30), 0, false, {}, rig.out);
   ck_assert(rig.controller.follow(4, {}, rig.out));
   rig.process(Rig::with(0s, Action::turn_left, 20));
-  assert_goes(rig.command().pan, 20, 4 * 20);
+  assert_goes(rig.command().pan, 20, kSetsOut);
   ck_assert(rig.controller.automatic({}, rig.out));
   rig.process(Rig::with(40ms, Action::turn_left, 20));
   assert_turns(rig.command().pan, -40);
@@ -469,7 +481,7 @@ START_TEST(a_manual_command_survives_a_halt_and_not_the_end_of_the_stream) {
   rig.controller.halt("paused", {}, 10s, rig.out);
   rig.controller.resume({}, rig.out);
   rig.process(Rig::with(0s, Action::turn_left));
-  assert_goes(rig.command().pan, 30, 90);
+  assert_goes(rig.command().pan, 30, 40);
   rig.controller.end({}, 10s, rig.out);
   rig.assert_status(HeadState::stopped, "end of the stream");
   ck_assert(!rig.controller.move(radians(10), 0, false, {}, rig.out));
@@ -575,7 +587,7 @@ START_TEST(a_manual_command_expires_with_the_watchdog) {
   rig.process(Rig::with(0s, Action::hold));
   rig.controller.move(radians(30), 0, false, {}, rig.out);
   rig.process(Rig::with(40ms, Action::hold));
-  assert_goes(rig.command().pan, 30, 90);
+  assert_goes(rig.command().pan, 30, 40);
   rig.process(Rig::with(2s, Action::turn_left));
   ck_assert(holds(rig.command().pan));  // the override goes on, its command does not
   ck_assert(rig.statuses.back().state == HeadState::manual);
@@ -594,7 +606,7 @@ START_TEST(a_clock_driven_head_is_commanded_at_once) {
   assert_turns(rig.command().pan, 40);
   assert_time(rig.command().time, 1200ms);
   ck_assert(rig.controller.move(radians(30), 0, false, 1300ms, rig.out));
-  assert_goes(rig.command().pan, 30, 90);
+  assert_goes(rig.command().pan, 30, 40);
   assert_time(rig.command().time, 1300ms);
   rig.process(Rig::with(1400ms, Action::turn_right));
   ck_assert_uint_eq(rig.record->commands.size(), 2);  // the manual command stays
@@ -653,7 +665,7 @@ START_TEST(a_manual_command_given_in_a_halt_is_executed_when_it_ends) {
   ck_assert(rig.controller.move(radians(30), 0, false, 1s, rig.out));
   ck_assert(rig.record->commands.empty());
   rig.controller.resume(2s, rig.out);
-  assert_goes(rig.command().pan, 30, 90);
+  assert_goes(rig.command().pan, 30, 40);
   assert_time(rig.command().time, 2s);
 }
 END_TEST
@@ -820,11 +832,11 @@ START_TEST(moves_expire_only_with_a_manual_timeout) {
   Rig rig(options);
   rig.controller.move(radians(100), 0, false, 1s, rig.out);
   rig.controller.tick(2s, rig.out);
-  assert_goes(rig.command().pan, 100, 90);
+  assert_goes(rig.command().pan, 100, 40);
   rig.controller.set_manual_timeout(300ms);
   rig.controller.move(radians(-100), 0, false, 3s, rig.out);
   rig.controller.tick(3299ms, rig.out);
-  assert_goes(rig.command().pan, -100, 90);
+  assert_goes(rig.command().pan, -100, 40);
   rig.controller.tick(3300ms, rig.out);
   ck_assert(holds(rig.command().pan));
 }
@@ -1101,7 +1113,7 @@ int main() {
                            without_a_pose_on_the_frame_the_head_s_own_pose_at_that_time_counts,
                            the_error_is_that_at_the_time_when_the_command_takes_effect,
                            within_the_dead_band_the_head_rests,
-                           search_turn_and_return_to_zero_become_commands_at_turn_speed,
+                           a_turn_is_made_at_full_speed_and_search_and_return_to_zero_at_turn_speed,
                            an_unchanged_state_is_reported_once_and_every_command_given,
                            without_fusion_a_track_is_followed_and_the_head_then_returns_to_zero,
                            a_target_beyond_a_limit_is_approached_to_the_limit,
