@@ -13,9 +13,12 @@
  * else the nearest, largest or newest (`target`); without a track for `return-delay` it returns to zero.
  *
  * A pixel becomes an angle through the lens (`horizontal-fov`), with the pose that the head had when the frame was
- * taken: the pose meta of the frame if it is this head's, else the element's own memory. The head follows
- * proportionally (`gain`) and rests within a dead band that has two thresholds. It never passes `pan-min`, `pan-max`,
- * `tilt-min`, `tilt-max`, which must include 0. Tilt holds unless a target is tracked or the head returns to zero.
+ * taken: the pose meta of the frame if it is this head's, else the element's own memory. The head goes with its target:
+ * the target's place and speed are estimated where it moves, in the world, and predicted to the time at which a command
+ * takes effect. `response` says how closely. Before a target that stands the head rests. It turns to a known direction at
+ * `max-speed`, and searches and returns to zero at `turn-speed`; a search begins where the target left. It never passes
+ * `pan-min`, `pan-max`, `tilt-min`, `tilt-max`, which must include 0. Tilt holds unless a target is tracked or the head
+ * returns to zero.
  * Limits, `max-speed` and `max-acceleration` that change while it plays apply at once: a head beyond a new
  * limit returns to it (in PAUSED: when that ends). Invalid limits cause a warning, and the old ones stay in force.
  *
