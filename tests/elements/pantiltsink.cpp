@@ -73,8 +73,8 @@ GST_START_TEST(slow_frames_are_answered_until_the_next_one) {
 GST_END_TEST
 
 // 40 degrees a second after 1/15 s at 600: from the latency on 40 (t - 0.06 - 1/30).
-GST_START_TEST(turn_turns_at_turn_speed_as_far_as_the_stop) {
-  Rig rig("pan-max=60");
+GST_START_TEST(turn_turns_at_full_speed_as_far_as_the_stop) {
+  Rig rig("pan-max=60 max-speed=40");
   auto poses = act(rig, CERBERUS_FUSION_TURN_RIGHT, 0, 60);
   fail_unless(pan_at(poses, 60 * GST_MSECOND) == 0);
   fail_unless(std::fabs(pan_at(poses, GST_SECOND) - 40 * (1 - 0.06 - 1 / 30.0)) < 1e-6);
@@ -268,7 +268,7 @@ GST_END_TEST
 
 GST_START_TEST(a_frame_may_come_in_the_middle_of_a_gap) {
   // Its command comes after the watchdog's, which was given for 1.16 s.
-  Rig rig("watchdog-timeout=200000000 pan-max=170");
+  Rig rig("watchdog-timeout=200000000 max-speed=40");
   act(rig, CERBERUS_FUSION_TURN_RIGHT, 0, 25);
   fail_unless(gst_harness_push_event(rig.harness, gst_event_new_gap(GST_SECOND, 180 * GST_MSECOND)));
   act(rig, CERBERUS_FUSION_TURN_RIGHT, 26, 30);
@@ -278,7 +278,7 @@ GST_END_TEST
 
 GST_START_TEST(when_frames_stay_away_the_head_has_stopped_meanwhile) {
   for (const bool gap : {false, true}) {  // that none will come
-    Rig rig("watchdog-timeout=200000000 pan-max=170");
+    Rig rig("watchdog-timeout=200000000 max-speed=40");
     act(rig, CERBERUS_FUSION_TURN_RIGHT, 0, 25);
     if (gap) fail_unless(gst_harness_push_event(rig.harness, gst_event_new_gap(25 * kFrame, 50 * kFrame)));
     const auto poses = act(rig, CERBERUS_FUSION_HOLD, 75, 1);  // 2 s later
@@ -426,7 +426,7 @@ GST_START_TEST(after_the_end_of_the_stream_nothing_moves_the_head) {
 GST_END_TEST
 
 GST_START_TEST(after_a_flush_time_begins_anew_and_the_head_goes_on_from_where_it_is) {
-  Rig rig;
+  Rig rig("max-speed=40");
   const double before = act(rig, CERBERUS_FUSION_TURN_RIGHT, 0, 50).back().pan;
   push_flush(rig.harness);
   const CerberusPose start = rig.next_pose();
@@ -442,9 +442,9 @@ GST_END_TEST
 GST_START_TEST(properties_changed_while_playing_count_from_the_next_frame) {
   Rig rig;
   act(rig, CERBERUS_FUSION_TURN_RIGHT, 0, 10);
-  g_object_set(rig.element, "turn-speed", 10.0, nullptr);
-  const auto poses = act(rig, CERBERUS_FUSION_TURN_RIGHT, 10, 10);
-  fail_unless(std::fabs(poses.back().pan_speed - 10) < 1e-6);
+  g_object_set(rig.element, "max-speed", 20.0, "turn-speed", 10.0, nullptr);
+  fail_unless(std::fabs(act(rig, CERBERUS_FUSION_TURN_RIGHT, 10, 10).back().pan_speed - 20) < 1e-6);
+  fail_unless(std::fabs(act(rig, CERBERUS_FUSION_ZERO, 20, 10).back().pan_speed + 10) < 1e-6);
 }
 GST_END_TEST
 
@@ -495,7 +495,7 @@ Suite* pantiltsink_suite() {
   tcase_add_test(tests, each_frame_is_answered_with_the_poses_until_its_time_plus_the_latency);
   tcase_add_test(tests, poses_meet);
   tcase_add_test(tests, slow_frames_are_answered_until_the_next_one);
-  tcase_add_test(tests, turn_turns_at_turn_speed_as_far_as_the_stop);
+  tcase_add_test(tests, turn_turns_at_full_speed_as_far_as_the_stop);
   tcase_add_test(tests, search_sweeps_from_edge_to_edge);
   tcase_add_test(tests, zero_returns_and_hold_stays);
   tcase_add_test(tests, a_target_comes_into_the_middle_and_the_head_rests);

@@ -43,7 +43,7 @@ GST_START_TEST(at_rest_poses_come_five_times_a_second) {
 GST_END_TEST
 
 GST_START_TEST(a_moving_head_tells_where_it_is_fifty_times_a_second) {
-  Rig rig("watchdog-timeout=0", Source::live);
+  Rig rig("watchdog-timeout=0 max-speed=40", Source::live);
   rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
   // At once: the plan has changed, its first piece ends when the latency has passed.
   wait_for_pose(rig, [](const CerberusPose& pose) { return pose.valid_until == 60 * GST_MSECOND; });
@@ -85,7 +85,7 @@ GST_START_TEST(a_piece_that_ends_is_followed_by_the_next_at_that_time) {
 GST_END_TEST
 
 GST_START_TEST(when_frames_stay_away_the_head_stops) {
-  Rig rig("watchdog-timeout=300000000", Source::live);
+  Rig rig("watchdog-timeout=300000000 max-speed=40", Source::live);
   rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
   wait_for_pose(rig, [](const CerberusPose& pose) { return pose.valid_until == 60 * GST_MSECOND; });
   while (rig.time() < 800 * GST_MSECOND) rig.crank();
@@ -148,7 +148,7 @@ GST_START_TEST(when_frames_stay_away_an_order_is_over) {
 GST_END_TEST
 
 GST_START_TEST(in_pause_a_head_with_a_clock_stands_still) {
-  Rig rig("watchdog-timeout=0", Source::live);
+  Rig rig("watchdog-timeout=0 max-speed=40", Source::live);
   rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
   wait_for_pose(rig, [](const CerberusPose& pose) { return pose.valid_until == 60 * GST_MSECOND; });
   while (rig.time() < 500 * GST_MSECOND) rig.crank();
