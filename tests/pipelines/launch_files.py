@@ -205,7 +205,7 @@ def check_the_loop(lines, width, reach):
         for each in line['objects']:
             right = each['x'] + each['w'] / 2 - width / 2
             if line['fusion']['action'] == 'track' and each['id'] == line['fusion']['target'] \
-                    and abs(pans[k]) < reach and abs(right) > 0.12 * width:
+                    and abs(pans[k]) < reach and abs(right) > 0.1 * width:
                 ways.append(right * (pans[k + 4] - pans[k]) > 0)
     assert len(ways) > 5 and sum(ways) > 0.8 * len(ways), \
         f'the head turned towards its target {sum(ways)} times of {len(ways)}'
