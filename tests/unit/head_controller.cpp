@@ -975,7 +975,7 @@ START_TEST(an_order_outlives_the_failure_of_an_older_command) {
   }
   rig.assert_status(HeadState::manual, "manual command: move");
   rig.controller.close(10s);
-  assert_goes(rig.command().pan, 30, 90);
+  assert_goes(rig.command().pan, 30, 40);
 }
 END_TEST
 
@@ -1030,7 +1030,7 @@ START_TEST(an_order_that_ends_the_fault_is_obeyed) {
       if (clock_driven) rig.controller.tick(now + 20ms, rig.out);
     }
     rig.assert_status(HeadState::manual, "manual command: move");
-    assert_goes(rig.command().pan, 30, 90);
+    assert_goes(rig.command().pan, 30, 40);
   }
 }
 END_TEST
