@@ -43,6 +43,11 @@ constexpr std::array kMigrations = {
     "ALTER TABLE recordings ADD COLUMN people INTEGER NOT NULL DEFAULT 0;"  // at once
     "ALTER TABLE recordings ADD COLUMN broken INTEGER NOT NULL DEFAULT 0;"  // 1: there is nothing to play in it
     "CREATE INDEX recordings_by_camera ON recordings (camera, begin);",
+    // What read_newest() and read_reasons() ask for, in the order of ids: SQLite appends the id to every index.
+    "CREATE INDEX recordings_by_camera_and_id ON recordings (camera) WHERE broken = 0;"
+    "CREATE INDEX recordings_kept ON recordings (camera) WHERE keep <> 0;"
+    "CREATE INDEX recordings_by_reason ON recordings (camera, CASE WHEN reason GLOB 'track [0-9]*'"
+    " THEN rtrim(rtrim(reason, '0123456789'), ' ') ELSE reason END) WHERE broken = 0;",
 };
 
 // Other programs may write rows: a time that differences would overflow with becomes 1970 or a far future.
@@ -66,7 +71,7 @@ std::string uri_of(const std::string& path) {
   return uri;
 }
 
-// "track 7": the numbers of tracks are many.
+// "track 7": the numbers of tracks are many. As in recordings_by_reason, or that index does not serve.
 constexpr char kReason[] =
     "CASE WHEN reason GLOB 'track [0-9]*' THEN rtrim(rtrim(reason, '0123456789'), ' ') ELSE reason END";
 constexpr char kSelect[] = "SELECT ", kFrom[] = ", id, keep FROM recordings";
@@ -307,7 +312,8 @@ std::string Index::read_newest(const Wanted& wanted, std::vector<Recording>& row
   if (wanted.until) where += " AND begin < ?";
   if (!wanted.reason.empty()) where += std::string(" AND ") + kReason + " = ?";
   if (wanted.kept) where += " AND keep <> 0";
-  if (wanted.below) where += " AND id < ?";
+  // A day has few rows, which are sorted; from `below` down there may be as many as there are.
+  if (wanted.below) where += wanted.from ? " AND +id < ?" : " AND id < ?";
   Statement select(database_.get(),
                    std::string(kSelect) + kColumns + kFrom + where + " ORDER BY id DESC LIMIT ?");
   select.bind(wanted.camera);
