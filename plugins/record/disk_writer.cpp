@@ -39,7 +39,7 @@ record::Time steady() {
   return std::chrono::microseconds(g_get_monotonic_time());
 }
 
-const FileFault kRemoved{"it was removed or moved while it was written", ""};
+const FileFault kRemoved{"it was removed or moved while it was written", "", true};
 
 // By the kernel; a hardened service (ProtectClock of systemd) may not ask it, and reads what systemd-timesyncd notes.
 bool clock_is_synchronised() {
@@ -51,7 +51,6 @@ bool clock_is_synchronised() {
 }  // namespace
 
 void DiskWriter::open(const record::Archive::Settings& archive) {
-  folder_ = archive.folder;
   const int error = record::Folder(folder_).usable();
   std::string fault;
   if (error) fault = takes_none(error) + ". Make it, or set \"location\".";
@@ -144,6 +143,11 @@ void DiskWriter::wait_below(std::uint64_t bytes, const std::function<bool()>& go
 }
 
 void DiskWriter::run(const record::Archive::Settings& archive) {
+  {
+    const std::lock_guard guard(lock_);
+    folder_ = archive.folder;
+    busy_since_ = steady();
+  }
   open(archive);
   bool finishing = false;
   auto next_retention = std::chrono::steady_clock::now() + kRetention;
@@ -152,12 +156,14 @@ void DiskWriter::run(const record::Archive::Settings& archive) {
     std::optional<Command> command;
     {
       std::unique_lock guard(lock_);
+      busy_since_.reset();
       const auto ready = [this] { return !commands_.empty() || stopping_; };
       if (level_ > 0 || stopping_)
         changed_.wait_for(guard, kLook, [this] { return !commands_.empty() || given_up_; });
       else
         changed_.wait_until(guard, std::min(next_watch, next_retention), ready);
       if (given_up_) break;
+      busy_since_ = steady();
       if (!commands_.empty()) {
         command = std::move(commands_.front().command);
         queued_ -= commands_.front().bytes;
@@ -176,7 +182,7 @@ void DiskWriter::run(const record::Archive::Settings& archive) {
       watch();
       next_watch = std::chrono::steady_clock::now() + kWatch;
     }
-    report_fault();
+    look_at_index();
     if (std::chrono::steady_clock::now() >= next_retention) {
       retain();
       next_retention = std::chrono::steady_clock::now() + kRetention;
@@ -226,8 +232,8 @@ void DiskWriter::execute(Open& command) {
     }
   }
   pass_complaints();
-  if (!fault.empty()) return report_end(file, FileReport::State::failed, {fault, ""});
-  file.since = steady();
+  if (!fault.empty()) return report_end(file, FileReport::State::failed, {fault, "", file.path.empty()});
+  file.since = file.moved = steady();
   report({FileReport::State::started, file.spec, file.path, {}, {}, {}, 0, {}});
   files_.emplace(number, std::move(file));
 }
@@ -311,8 +317,12 @@ void DiskWriter::report_deleted(const std::vector<std::string>& names) {
 
 // Complaints come after the fault that they explain: the log's first line says that recording fails.
 void DiskWriter::pass_complaints() {
-  report_fault();
+  look_at_index();
   for (const std::string& text : archive_.take_complaints()) warn(text);
+}
+
+std::string DiskWriter::no_answer() const {
+  return "The disk of the folder " + record::in_quotes(folder_) + " does not answer";
 }
 
 std::string DiskWriter::takes_none(int error) const {
@@ -328,39 +338,85 @@ void DiskWriter::watch() {
       removed.push_back(number);
     } else if (size_of(file.path) > 0) {
       writes = true;
+      const std::lock_guard guard(lock_);
       faults_.file_written_for(steady() - file.since);
     }
   }
   for (const std::uint32_t number : removed) fail(number, kRemoved);
   const record::Folder folder(folder_);
-  if (faults_.must_try(folder.usable() == 0, folder.free_bytes(), writes, steady())) {
+  const bool usable = folder.usable() == 0;
+  const auto free = folder.free_bytes();
+  const bool must_try = [&] {
+    const std::lock_guard guard(lock_);
+    return faults_.must_try(usable, free, writes, steady());
+  }();
+  if (must_try) {
     const int error = folder.try_out(record::RecordingFaults::Parameters{}.least_free);
-    const bool was_sound = faults_.text().empty();
-    faults_.tried(error ? takes_none(error) : "");
+    const bool was_sound = [&] {
+      const std::lock_guard guard(lock_);
+      const bool sound = faults_.text().empty();
+      faults_.tried(error ? takes_none(error) : "");
+      return sound;
+    }();
     if (error && was_sound) {
       report_fault();
-      warn(faults_.text());
+      warn(takes_none(error));
     }
   }
   archive_.watch(steady());
+  // What was waited for has come.
+  const bool silent = !all_move();
+  {
+    const std::lock_guard guard(lock_);
+    faults_.set_silent(silent ? no_answer() : "");
+  }
   pass_complaints();
 }
 
+void DiskWriter::look_at_index() {
+  {
+    const std::lock_guard guard(lock_);
+    faults_.set_index(archive_.index_fault());
+  }
+  report_fault();
+}
+
+// Whether every file is written as far as there is something to write. Writing has a thread of its own for each file.
+bool DiskWriter::all_move() {
+  const record::Time now = steady();
+  bool all = true;
+  for (auto& [number, file] : files_) {
+    const std::uint64_t taken = file.pipeline->video_taken();
+    const bool waits = file.closing || file.pipeline->video_level() > 0;
+    if (std::exchange(file.taken, taken) != taken || !waits) file.moved = now;
+    all = all && !faults_.waits_too_long(file.moved, now);
+  }
+  return all;
+}
+
+void DiskWriter::look_for_answer() {
+  {
+    const std::lock_guard guard(lock_);
+    if (!busy_since_ || !faults_.waits_too_long(*busy_since_, steady())) return;
+    faults_.set_silent(no_answer());
+  }
+  report_fault();
+}
+
+// In any thread; what changes last is reported last.
 void DiskWriter::report_fault() {
-  faults_.set_index(archive_.index_fault());
-  if (const auto text = faults_.take_change())
-    report({text->empty() ? FileReport::State::sound : FileReport::State::fault,
-            nullptr,
-            {},
-            {},
-            {},
-            {},
-            0,
-            {*text, ""}});
+  {
+    const std::lock_guard guard(lock_);
+    const auto text = faults_.take_change();
+    if (!text) return;
+    const auto state = text->empty() ? FileReport::State::sound : FileReport::State::fault;
+    faults_to_report_.put({state, nullptr, {}, {}, {}, {}, 0, {*text, ""}});
+  }
+  faults_to_report_.deliver([this](const FileReport& fault) { report(fault); });
 }
 
 void DiskWriter::execute(Abandon& command) {
-  fail(command.file, {command.reason, ""});
+  fail(command.file, {command.reason, "", true});
 }
 
 void DiskWriter::execute(Ended& command) {
@@ -371,7 +427,10 @@ void DiskWriter::execute(Ended& command) {
   File file = std::move(found->second);
   files_.erase(found);
   file.pipeline.reset();
-  faults_.file_complete();
+  {
+    const std::lock_guard guard(lock_);
+    faults_.file_complete();
+  }
   report_end(file, FileReport::State::ended, {});
   check_done();
 }
@@ -400,7 +459,13 @@ void DiskWriter::report_end(File& file, FileReport::State state, const FileFault
   if (state == FileReport::State::failed) {
     const int error = record::Folder(folder_).try_out(record::RecordingFaults::Parameters{}.least_free);
     const std::string which = file.path.empty() ? "" : record::in_quotes(file.path) + ": ";
-    faults_.file_failed(error ? takes_none(error) : which + fault.text, steady());
+    {
+      const std::lock_guard guard(lock_);
+      if (error || fault.of_disk)
+        faults_.disk_failed(error ? takes_none(error) : which + fault.text, steady());
+      else
+        faults_.stream_failed(which + fault.text);
+    }
     report_fault();
   }
   const std::uint64_t bytes = size_of(file.path);

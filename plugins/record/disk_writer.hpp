@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What runs in the writer's thread: carries out its commands in their order and owns the archive and the open files. Its
-// own object, because the thread may outlast the recorder where a disk does not answer. enqueue(), pending(),
-// wait_below() and what belongs to stopping may be called in any thread, all else in the writer's.
+// own object, because the thread may outlast the recorder where a disk does not answer. enqueue(), look_for_answer(),
+// pending(), wait_below() and what belongs to stopping may be called in any thread, all else in the writer's.
 #pragma once
 
 #include <condition_variable>
@@ -16,6 +16,7 @@
 #include "record/archive/archive.h"
 #include "record/frame_journal.h"
 #include "record/recording_faults.h"
+#include "threads/in_order.h"
 
 namespace cerberus::plugin {
 
@@ -90,6 +91,9 @@ class DiskWriter {
   // are not complete.
   std::vector<FileReport> give_up();
 
+  // Reports a disk on which the thread has waited too long; it cannot do so itself.
+  void look_for_answer();
+
   // Bytes that wait for the disk.
   std::uint64_t pending() const;
   // Waits until fewer wait, while `go_on` is true.
@@ -107,6 +111,8 @@ class DiskWriter {
     GstClockTime last = 0;  // in the file
     record::Time since{};   // steady
     bool closing = false;
+    std::uint64_t taken = 0;  // of the video, at the last look
+    record::Time moved{};     // steady: when that was more than before, or nothing waited
   };
 
   // A file that was asked for and is neither complete nor reported as failed.
@@ -130,8 +136,11 @@ class DiskWriter {
   void report_deleted(const std::vector<std::string>& names);
   void pass_complaints();
   void watch();
+  bool all_move();
+  void look_at_index();
   void report_fault();
   std::string takes_none(int error) const;
+  std::string no_answer() const;
   record::Surroundings surroundings() const;
   void fail(std::uint32_t file, const FileFault& fault);
   void report_end(File& file, FileReport::State state, const FileFault& fault);
@@ -154,12 +163,14 @@ class DiskWriter {
   std::optional<std::string> folder_fault_;  // see opened_within()
   bool late_ = false;  // opened_within() gave up; a fault of the folder is then a warning
   std::map<std::uint32_t, Unfinished> unfinished_;
+  record::RecordingFaults faults_;
+  std::optional<record::Time> busy_since_;  // steady: when the thread last waited for nothing but commands
+  threads::InOrder<FileReport, 16> faults_to_report_;
 
+  std::string folder_;  // set before anything waits
   // Of the writer's thread:
-  std::string folder_;
   record::Archive archive_;
   std::map<std::uint32_t, File> files_;
-  record::RecordingFaults faults_;
   std::vector<std::function<void()>> waiting_;
 };
 

@@ -72,8 +72,8 @@
  *
  * `state` is `fault`, with `fault` (string) alone, when recording begins to fail, and when it fails for another reason: a
  * file could not be written, the folder takes none (it is looked at every 2 s, and tried out where less than 1 MiB is
- * free), or the index cannot be written. It is `sound` when recording works again: a file was written for 2 s, or none is
- * asked for and the folder takes one on trial.
+ * free), its disk has not answered for 5 s, or the index cannot be written. It is `sound` when recording works again: a
+ * file was written for 2 s; or, where it was the disk that failed, none is asked for and the folder takes one on trial.
  *
  * ## Example launch lines
  * |[

@@ -108,7 +108,8 @@ void FilePipeline::report(GstMessage* message) {
     g_autoptr(GError) error = nullptr;
     g_autofree gchar* detail = nullptr;
     gst_message_parse_error(message, &error, &detail);
-    ended_(std::make_shared<FileFault>(FileFault{error->message, detail ? detail : ""}));
+    ended_(std::make_shared<FileFault>(
+        FileFault{error->message, detail ? detail : "", error->domain == GST_RESOURCE_ERROR}));
   }
 }
 
@@ -119,6 +120,7 @@ void FilePipeline::push(int track, GstBuffer* buffer) {
     return;
   }
   tracks_[index].last = GST_BUFFER_PTS(buffer);
+  if (track == 0) video_pushed_ += gst_buffer_get_size(buffer);
   gst_app_src_push_buffer(GST_APP_SRC(tracks_[index].source), buffer);
   if (track != 0) return;
   for (std::size_t k = 1; k < tracks_.size(); ++k)
@@ -133,6 +135,10 @@ void FilePipeline::end_track(int track) {
 
 void FilePipeline::finish() {
   for (std::size_t k = 0; k < tracks_.size(); ++k) end_track(static_cast<int>(k));
+}
+
+std::uint64_t FilePipeline::video_level() const {
+  return tracks_[0].source ? gst_app_src_get_current_level_bytes(GST_APP_SRC(tracks_[0].source)) : 0;
 }
 
 std::uint64_t FilePipeline::level() const {

@@ -29,6 +29,7 @@ struct FileSpec {
 // What went wrong, in words for a user and for a developer.
 struct FileFault {
   std::string text, detail;
+  bool of_disk = false;  // else of what was to be written
 };
 
 class FilePipeline {
@@ -48,6 +49,9 @@ class FilePipeline {
   void finish();
   // Bytes that wait to be muxed.
   std::uint64_t level() const;
+  // Bytes of the video that wait, and that were taken; audio may wait for the next frame.
+  std::uint64_t video_level() const;
+  std::uint64_t video_taken() const { return video_pushed_ - video_level(); }
 
  private:
   struct Track {
@@ -61,6 +65,7 @@ class FilePipeline {
   GstElement* pipeline_;
   Ended ended_;
   std::vector<Track> tracks_;
+  std::uint64_t video_pushed_ = 0;
 };
 
 }  // namespace cerberus::plugin

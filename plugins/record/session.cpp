@@ -317,6 +317,7 @@ bool Session::add(Input& input, GstBuffer* buffer) {
   }();
   for (const std::string& text : {untimed, fault})
     if (!text.empty() && added) warn_(text);
+  if (input.track == 0) writer_.look_for_answer();
   return added;
 }
 

@@ -82,6 +82,10 @@ void Writer::when_done(std::function<void()> done) {
   disk()->enqueue(DiskWriter::Done{std::move(done)});
 }
 
+void Writer::look_for_answer() {
+  disk()->look_for_answer();
+}
+
 std::uint64_t Writer::pending() const {
   return disk()->pending();
 }

@@ -12,7 +12,7 @@ namespace cerberus::plugin {
 
 class Writer {
  public:
-  // Both are called in the writer's thread, by start() and by stop(). They are called after stop() where the disk did not
+  // Both are called in the writer's thread, by start(), by look_for_answer() and by stop(). They are called after stop() where the disk did not
   // answer during a call: they own what they need.
   using Report = DiskWriter::Report;
   using Warn = DiskWriter::Warn;
@@ -41,6 +41,9 @@ class Writer {
   void abandon(std::uint32_t file, const std::string& reason);
   // Calls done() once all files that are closed by now are complete.
   void when_done(std::function<void()> done);
+
+  // Reports a disk that has not answered for too long; meant for every frame.
+  void look_for_answer();
 
   // Bytes that wait for the disk.
   std::uint64_t pending() const;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What the recorder puts beside a file, its index and retention, and a disk that is slow or takes nothing.
-#include <fcntl.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <condition_variable>
@@ -11,41 +9,10 @@
 #include <mutex>
 #include <utility>
 
+#include "blocked_folder.h"
 #include "recorder_rig.h"
 
 using namespace recorder_rig;
-
-namespace {
-
-// A folder whose disk does not answer. Before main() it is all zero, which is valid.
-struct BlockedFolder {
-  GMutex lock;
-  GCond changed;
-  char path[64];
-
-  void block(const std::string& folder) {
-    g_mutex_lock(&lock);
-    g_strlcpy(path, folder.c_str(), sizeof path);
-    g_mutex_unlock(&lock);
-  }
-  void release() {
-    block("");
-    g_cond_broadcast(&changed);
-  }
-  void await(const char* folder) {
-    g_mutex_lock(&lock);
-    while (*path && strcmp(folder, path) == 0) g_cond_wait(&changed, &lock);
-    g_mutex_unlock(&lock);
-  }
-} blocked_folder;
-
-}  // namespace
-
-// In place of the C library's, for every module of this process.
-extern "C" int access(const char* path, int mode) noexcept {
-  blocked_folder.await(path);
-  return faccessat(AT_FDCWD, path, mode, 0);
-}
 
 namespace {
 

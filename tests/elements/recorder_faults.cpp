@@ -1,15 +1,32 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What keeps a recorder from recording is reported once, as `fault`, and ends with `sound`: a file that cannot be written, a
-// folder that is removed, an index that another program locks. (A full disk: recorder_full_disk.cpp.)
+// folder that is removed, an index that another program locks, a disk that does not answer. (A full disk: recorder_full_disk.cpp.)
 #include <sqlite3.h>
 
 #include <memory>
 
+#include "blocked_folder.h"
 #include "recorder_rig.h"
 
 using namespace recorder_rig;
 
 namespace {
+
+// next_fault(), while frames come.
+std::string next_fault_while_playing(Rig& rig) {
+  while (rig.next < 60 * 20) {
+    rig.play_to(rig.next);
+    g_usleep(50000);
+    while (g_autoptr(GstMessage) message = gst_bus_pop_filtered(rig.bus, GST_MESSAGE_ELEMENT)) {
+      const GstStructure* facts = gst_message_get_structure(message);
+      const gchar* fault = gst_structure_get_string(facts, "fault");
+      if (fault) return fault;
+      if (g_strcmp0(gst_structure_get_string(facts, "state"), "sound") == 0) return "sound";
+    }
+  }
+  fail("no fault is reported");
+  return "";
+}
 
 struct Database {
   sqlite3* database = nullptr;
@@ -131,6 +148,26 @@ GST_START_TEST(an_index_that_is_locked_is_a_fault_and_what_is_recorded_meanwhile
 }
 GST_END_TEST
 
+// The loop's first turn: where the disk is looked at; its second: where a file is written.
+GST_START_TEST(a_disk_that_does_not_answer_is_a_fault_until_it_does_and_costs_no_frame) {
+  using What = BlockedFolder::What;
+  Rig rig;
+  rig.start();
+  rig.play_to(57);
+  rig.start_event();
+  rig.play_to(70);
+  g_autoptr(GstStructure) started = rig.wait_for_file("started");
+  blocked_folder.block(rig.folder.path(), __i__ == 0 ? What::looks : What::writes);
+  const std::string fault = next_fault_while_playing(rig);
+  blocked_folder.release();
+  fail_unless(fault.find(rig.folder.path() + "\" does not answer") != fault.npos, "%s", fault.c_str());
+  fail_unless(next_fault_while_playing(rig) == "sound");
+  const guint32 last = rig.next - 1;
+  rig.finish();
+  fail_unless(numbers_of(read_back(rig.folder.path() + "/1.mp4")) == range(30, last));
+}
+GST_END_TEST
+
 static Suite* recorder_faults_suite() {
   watch_library_log();
   Suite* suite = suite_create("recorder_faults");
@@ -144,6 +181,7 @@ static Suite* recorder_faults_suite() {
   tcase_add_test(tests, a_folder_that_is_removed_while_nothing_happens_is_a_fault_until_it_is_there_again);
   tcase_add_loop_test(
       tests, an_index_that_is_locked_is_a_fault_and_what_is_recorded_meanwhile_is_listed_afterwards, 0, 2);
+  tcase_add_loop_test(tests, a_disk_that_does_not_answer_is_a_fault_until_it_does_and_costs_no_frame, 0, 2);
   suite_add_tcase(suite, tests);
   return suite;
 }

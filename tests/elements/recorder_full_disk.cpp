@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 
 #include "recorder_rig.h"
 
@@ -14,7 +15,7 @@ using namespace recorder_rig;
 namespace {
 
 bool mount_small_disk(const std::string& folder) {
-  return mount("none", folder.c_str(), "tmpfs", 0, "size=64k") == 0;
+  return mount("none", folder.c_str(), "tmpfs", 0, "size=512k") == 0;
 }
 
 bool may_mount() {
@@ -33,6 +34,11 @@ GST_START_TEST(a_disk_that_is_full_is_a_fault_before_an_event_needs_it_and_until
   fail_unless(mount_small_disk(rig.folder.path()));
   rig.start();
   fault_names(rig, rig.folder.path().c_str(), "No space left");
+  {
+    std::ofstream filler(rig.folder.path() + "/filler");
+    while (filler.put('x').flush()) {
+    }
+  }
   rig.play_to(57);
   rig.start_event();
   g_autoptr(GstStructure) failed = rig.wait_for_file("failed");
