@@ -326,7 +326,7 @@ encoder = "RECORDED"
 
 
 def test_resized():
-    """A file whose size changes in mid-stream is annotated without a damaged picture, each in its size."""
+    """A stream whose size changes is annotated, and recorded by the robot, without a damaged picture, each in its size."""
     sizes, each = ((320, 240), (640, 480), (320, 240)), 40
     stream = b''
     for width, height in sizes:
@@ -336,17 +336,27 @@ def test_resized():
     pathlib.Path('stream.h264').write_bytes(stream)
     source = 'filesrc location=stream.h264 ! decodebin'
     must(gst_launch(f'{source} ! videoconvert ! motiondetect ! motionoverlay ! {I420} ! filesink location=drawn.raw'))
+    must(gst_launch(f'{source} ! {I420} ! filesink location=plain.raw'))
+    pathlib.Path('pir.csv').write_text('0,0,0,0\n', 'ascii')
     ended(launch_file('annotate', SOURCE=source))
-    must(gst_launch(f'filesrc location=annotated.mp4 ! decodebin ! {I420} ! filesink location=GStreamer.raw'))
+    ended(launch_file('robot', SOURCE=source, SENSORS='pirsrc driver=replay location=pir.csv is-live=true',
+                      FILE='robot.mkv', JSON=os.devnull, PORT=9, ENCODER=encoder('x264', 4)))
+    compare_sizes('annotated.mp4', 'drawn.raw', sizes, each)
+    compare_sizes('robot.mkv', 'plain.raw', sizes, each)
+
+
+def compare_sizes(path, before, sizes, each):
+    """A file with `each` pictures of every size."""
+    must(gst_launch(f'filesrc location={path} ! decodebin ! {I420} ! filesink location=GStreamer.raw'))
     if shutil.which('ffmpeg'):
-        must(run('ffmpeg -nostdin -y -v error -i annotated.mp4 -autoscale 0 -fps_mode passthrough -f rawvideo '
+        must(run(f'ffmpeg -nostdin -y -v error -i {path} -autoscale 0 -fps_mode passthrough -f rawvideo '
                  '-pix_fmt yuv420p ffmpeg.raw'))
     for name in ('GStreamer', 'ffmpeg') if shutil.which('ffmpeg') else ('GStreamer',):
-        with open('drawn.raw', 'rb') as drawn, open(f'{name}.raw', 'rb') as found:
+        with open(before, 'rb') as first, open(f'{name}.raw', 'rb') as found:
             for width, height in sizes:
-                for file, part in ((drawn, 'before.raw'), (found, 'after.raw')):
+                for file, part in ((first, 'before.raw'), (found, 'after.raw')):
                     pathlib.Path(part).write_bytes(file.read(each * width * height * 3 // 2))
-                print(f'{width}x{height} by {name}:')
+                print(f'{path}, {width}x{height} by {name}:')
                 print(must(run([PICTURES, 'compare', width, height, 'before.raw', 'after.raw', each])))
             assert not found.read(), 'more pictures than there were'
 
@@ -500,17 +510,18 @@ def robot(file, port, folder, recorded, shown):
 
 
 def test_cerberusd(program):
-    """Its streams: the plain one is what its recorder writes."""
+    """Its streams, by both transports: the plain one is what its recorder writes."""
     pictures(MANY, paced=True)
     draw('motiondetect ! pirfusion ! motionoverlay crosshair=true')
-    for recorded, shown in (('h264', 'openh264'), ('openh264enc', 'h264'), ('jpegenc', 'vp8enc')):
+    for recorded, shown, plain, annotated in (('h264', 'openh264', 'tcp', 'udp'), ('openh264enc', 'h264', 'udp', 'tcp'),
+                                              ('jpegenc', 'vp8enc', 'tcp', 'udp')):
         port, folder, encodings = free_port(), recorded, {'vp8enc': 'vp8', 'jpegenc': 'jpeg'}
         pathlib.Path('robot.toml').write_text(robot('scene.mkv', port, folder, recorded, shown), 'ascii')
         server = start([program, 'robot.toml'])
         wait_until(lambda: is_served(port, '/yard/annotated'), server)
         readers = Readers()
-        watch(readers, f'rtsp://127.0.0.1:{port}/yard/plain', 'scene.raw', encodings.get(recorded, 'h264'), 'tcp')
-        watch(readers, f'rtsp://127.0.0.1:{port}/yard/annotated', 'drawn.raw', encodings.get(shown, 'h264'), 'udp')
+        watch(readers, f'rtsp://127.0.0.1:{port}/yard/plain', 'scene.raw', encodings.get(recorded, 'h264'), plain)
+        watch(readers, f'rtsp://127.0.0.1:{port}/yard/annotated', 'drawn.raw', encodings.get(shown, 'h264'), annotated)
         readers.compare()
         os.killpg(server.pid, signal.SIGTERM)
         ended(server)
