@@ -14,6 +14,7 @@
 #include "robot/pipeline_text.h"
 #include "robot/settings_file.h"
 #include "rtsp_output.h"
+#include "tls_trial.h"
 #if HAVE_PAGE
 #include <libsoup/soup.h>
 
@@ -281,10 +282,11 @@ class Trying {
     g_autoptr(GError) error = nullptr;
     g_autoptr(GTlsCertificate) loaded =
         g_tls_certificate_new_from_files(certificate.c_str(), key.c_str(), &error);
-    if (loaded == nullptr)
+    const std::string fault = loaded == nullptr ? error->message : tls_fault(loaded);
+    if (!fault.empty())
       mistake(line_of(settings_.lines, table + ".certificate", 0),
               is("certificate", '[' + table + ']', certificate) + " and \"certificate-key\" \"" + key +
-                  "\": " + error->message + "; both are PEM files of one certificate");
+                  "\": " + fault + "; both are PEM files of one certificate");
   }
 
   // The tool that makes a certificate where none is named.

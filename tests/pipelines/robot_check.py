@@ -4,6 +4,7 @@
 what this machine lacks is said, too. A file with such a mistake is refused at the start and at SIGHUP as well."""
 import pathlib
 import re
+import shutil
 import signal
 import socket
 import subprocess
@@ -142,6 +143,26 @@ RIGHT = [
 ]
 
 
+TLS = '[page]\ntls = true\ncertificate = "CERTIFICATE"\ncertificate-key = "KEY"\n'
+
+
+def certificates(folder):
+    """Two certificates with their keys, which the openssl tool makes; what must be right, and what must not."""
+    if not shutil.which('openssl'):
+        return
+    for name, kind in {'one': ['ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1'], 'two': ['ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1'],
+                       'rsa': ['rsa:2048']}.items():
+        subprocess.run(['openssl', 'req', '-x509', '-newkey', *kind, '-nodes', '-days', '2', '-subj', f'/CN={name}',
+                        '-keyout', folder / f'{name}.key', '-out', folder / f'{name}.pem'], capture_output=True, check=True)
+    pair = lambda text, certificate, key: text.replace('CERTIFICATE', f'{certificate}.pem').replace('KEY', f'{key}.key')
+    rtsp = PAGE + TLS.replace('[page]', '[rtsp]')
+    for certificate, key in (('one', 'one'), ('rsa', 'rsa')):
+        RIGHT.extend(FRONT + pair(text, certificate, key) for text in (TLS, rtsp))
+    for certificate, key in (('one', 'two'), ('one', 'rsa'), ('rsa', 'one')):
+        MISTAKES.append((FRONT + pair(TLS, certificate, key), 6, ['"certificate"', f'{certificate}.pem', f'{key}.key', 'one certificate']))
+    MISTAKES.append((FRONT + pair(rtsp, 'one', 'two'), 8, ['"certificate"', 'one.pem', 'two.key']))
+
+
 def free_port():
     with socket.socket() as probe:
         probe.bind(('127.0.0.1', 0))
@@ -221,6 +242,7 @@ def main():
         for file, text in {'short': 'too short\n', 'secret': 'a secret of 16 letters\n', 'empty': ''}.items():
             (folder / file).write_text(text)
             (folder / file).chmod(0o600)
+        certificates(folder)
         checks(folder)
         starts_and_reloads(folder)
 
