@@ -76,16 +76,22 @@ bool PageListener::open(SoupServer* server, GSocketAddress* address, GTlsCertifi
   return true;
 }
 
+std::size_t PageListener::count_of(const std::string& client) const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(open_, [&](const auto& one) { return one.second.client == client; }));
+}
+
 // A connection that is not handed on is closed with its last reference.
 void PageListener::accept(GSocketConnection* connection) {
   g_autoptr(GSocketAddress) remote = g_socket_connection_get_remote_address(connection, nullptr);
   g_autoptr(GSocketAddress) local = g_socket_connection_get_local_address(connection, nullptr);
   if (remote == nullptr || local == nullptr || open_.size() >= parameters_.most) return;
   std::string name = name_of(remote);
-  const auto of_address = std::ranges::count_if(
-      open_, [&](const auto& one) { return without_port(one.second.name) == without_port(name); });
-  if (static_cast<std::size_t>(of_address) >= parameters_.most_of_address &&
-      !is_in(without_port(name), trusted_))
+  const std::string address = without_port(name);
+  const bool of_proxy = is_in(address, trusted_);
+  const auto of_proxies = std::ranges::count_if(open_, [](const auto& one) { return one.second.of_proxy; });
+  if (of_proxy ? static_cast<std::size_t>(of_proxies) >= parameters_.most_of_proxies
+               : count_of(address) >= parameters_.most_of_address)
     return;
   GSocket* socket = g_socket_connection_get_socket(connection);
   g_socket_set_timeout(socket, parameters_.idle);
@@ -99,7 +105,8 @@ void PageListener::accept(GSocketConnection* connection) {
     g_tls_connection_set_require_close_notify(G_TLS_CONNECTION(secure), FALSE);
     g_object_unref(std::exchange(stream, secure));
   }
-  open_.emplace(G_OBJECT(connection), Open{std::move(name), in_seconds(parameters_.head)});
+  open_.emplace(G_OBJECT(connection),
+                Open{std::move(name), of_proxy ? "" : address, in_seconds(parameters_.head), of_proxy});
   g_object_weak_ref(G_OBJECT(connection), forget, this);
   soup_server_accept_iostream(server_, stream, local, remote, &fault);
 }
@@ -119,10 +126,22 @@ void PageListener::note(GSocketAddress* remote, Step step) {
   for (auto& [connection, open] : open_) {
     if (open.name != name || open.socket) continue;
     open.socket = step == Step::became_socket;
+    if (open.of_proxy && step == Step::answered) open.client.clear();
     open.until = step == Step::head_read  ? in_seconds(parameters_.head)
                  : step == Step::answered ? in_seconds(parameters_.idle)
                                           : 0;
   }
+}
+
+bool PageListener::assign(GSocketAddress* remote, const std::string& client) {
+  const std::string name = name_of(remote);
+  for (auto& [connection, open] : open_) {
+    if (open.name != name || !open.of_proxy) continue;
+    open.client.clear();
+    if (count_of(client) >= parameters_.most_of_address) return false;
+    open.client = client;
+  }
+  return true;
 }
 
 void PageListener::sweep() {

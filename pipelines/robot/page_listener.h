@@ -17,8 +17,9 @@ namespace cerberus::robot {
 class PageListener {
  public:
   struct Parameters {
-    // 16 open pages, each with the six connections that browsers make; a single address leaves room for others.
-    std::size_t most = 128, most_of_address = 48;
+    // 16 open pages, each with the six connections that browsers make; a single address leaves room for others, and so do
+    // all proxies together.
+    std::size_t most = 128, most_of_address = 48, most_of_proxies = 96;
     // Longer than browsers keep a connection for the next request makes no difference; pages that are open are pinged
     // every 10 s.
     guint idle = 60;  // seconds
@@ -39,16 +40,21 @@ class PageListener {
   // How far a request on the connection is. A WebSocket has no limit of time from then on.
   enum class Step { head_read, body_read, answered, became_socket };
   void note(GSocketAddress* remote, Step step);
-  // Addresses that may have more connections than others: those of proxies.
+  // A request on the connection is that of `client`, until it is answered or as long as it is a WebSocket. False: the
+  // connection is a proxy's, and this client has as many requests on others as an address may have connections.
+  bool assign(GSocketAddress* remote, const std::string& client);
+  // Addresses of proxies, which have the connections of many clients.
   void trust(std::vector<std::string> networks) { trusted_ = std::move(networks); }
 
  private:
   struct Open {
-    std::string name;  // the remote address and port: "127.0.0.1:4711"
-    gint64 until = 0;  // monotonic time, microseconds; 0: no limit
-    bool socket = false;
+    std::string name;    // the remote address and port: "127.0.0.1:4711"
+    std::string client;  // whose it is; of a proxy: whose request is on it, empty while there is none
+    gint64 until = 0;    // monotonic time, microseconds; 0: no limit
+    bool of_proxy = false, socket = false;
   };
   void sweep();
+  std::size_t count_of(const std::string& client) const;
   void accept(GSocketConnection* connection);
   static void forget(gpointer listener, GObject* connection);  // which is gone
 

@@ -209,6 +209,8 @@ void PageServer::authorize(SoupServerMessage* message, std::string_view path) {
     soup_server_message_set_response(message, "text/plain; charset=utf-8", SOUP_MEMORY_STATIC, why,
                                      strlen(why));
   };
+  if (!listener_.assign(soup_server_message_get_remote_address(message), client(message).address))
+    return refuse(SOUP_STATUS_SERVICE_UNAVAILABLE, "too many requests at once\n");
   const std::string_view method = soup_server_message_get_method(message);
   const std::string host = header(message, "Host"), origin = header(message, "Origin");
   const std::vector<std::string>& origins = house_.settings.page.origins;

@@ -22,11 +22,12 @@ class Page:
         self.context = ssl.create_default_context(cafile=self.certificate) if self.certificate else None
         self.origin = f'http{"s" if self.context else ""}://{self.host}'
 
-    def ask(self, method, path, form=None, origin='own', headers=()):
+    def ask(self, method, path, form=None, origin='own', headers=(), source='127.0.0.1'):
         """Status, headers and body of one request."""
-        line = http.client.HTTPConnection('127.0.0.1', self.port, timeout=PATIENCE)
+        how = {'timeout': PATIENCE, 'source_address': (source, 0)}
+        line = http.client.HTTPConnection('127.0.0.1', self.port, **how)
         if self.context:
-            line = http.client.HTTPSConnection('127.0.0.1', self.port, timeout=PATIENCE, context=self.context)
+            line = http.client.HTTPSConnection('127.0.0.1', self.port, context=self.context, **how)
         send = {'Host': self.host} | dict(headers)
         cookies = ['other=1'] + [f'{key}={value}' for key, value in
                                  (('cerberus', self.cookie), ('cerberus-device', self.device)) if value]
