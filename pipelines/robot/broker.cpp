@@ -3,7 +3,6 @@
 
 #include <glib.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "robot/settings_file.h"
@@ -31,49 +30,57 @@ plugin::MqttServer broker_of(const Properties& mqtt, const char* what) {
 
 void RetiredTopics::take(const Settings& settings) {
   path_ = settings.state_folder + "/mqtt-topics";
-  Topics before = topics_of(text::read_file(path_, kLongestList).text);
-  present_ = retained_topics(settings);
-  before.merge(retired_);  // those of which the list was not written
-  retired_.clear();
-  std::ranges::set_difference(before, present_, std::inserter(retired_, retired_.end()));
-  before.insert(present_.begin(), present_.end());
-  if (!before.empty()) keep(before);
+  if (all_.empty()) all_ = left_topics_of(text::read_file(path_, kLongestList).text);
+  settings_ = settings;
+  all_ = with_present(std::move(all_), settings);
+  retired_ = retired_topics(all_, settings);
+  if (!all_.empty()) keep();
   client_.stop();
   started_ = false;
-  mqtt_ = settings.mqtt.value_or(Properties{});
-  if (!retired_.empty() && !settings.mqtt)
-    g_printerr(
-        "cerberusd: MQTT: cameras that published before stay at their broker, because there is no [mqtt] any "
-        "more: %zu topics\n",
-        retired_.size());
+  deadline_ = std::chrono::steady_clock::now() + kPatience;
+}
+
+void RetiredTopics::start() {
+  const LeftTopics& one = retired_.front();
+  const std::string host = broker_of(one.broker, "MQTT").host;
+  client_.start(broker_of(one.broker, "MQTT"),
+                {.on_command = {}, .on_message = {}, .on_fault = [host](const std::string& fault) {
+                   g_printerr(
+                       "cerberusd: MQTT: what was left at the broker %s is cleared when it can be reached: "
+                       "%s\n",
+                       host.c_str(), fault.c_str());
+                 }});
+  for (const std::string& topic : one.topics) client_.publish({topic, "", true});
 }
 
 void RetiredTopics::tick(bool quiet) {
-  if (retired_.empty() || mqtt_.empty()) return;
-  if (!started_) {
+  if (retired_.empty()) return;
+  const Properties broker = retired_.front().broker;
+  const std::string host = broker_of(broker, "MQTT").host;
+  const bool is_present = settings_.mqtt && broker == broker_properties(*settings_.mqtt);
+  const bool too_late = broker.empty() || (!is_present && std::chrono::steady_clock::now() > deadline_);
+  if (!started_ && !too_late) {
     if (!quiet) return;
     started_ = true;
-    client_.start(
-        broker_of(mqtt_, "MQTT"),
-        {.on_command = {}, .on_message = {}, .on_fault = [](const std::string& fault) {
-           g_printerr(
-               "cerberusd: MQTT: what a camera left that was removed is cleared when the broker can be "
-               "reached: %s\n",
-               fault.c_str());
-         }});
-    for (const std::string& topic : retired_) client_.publish({topic, "", true});
-    return;
+    return start();
   }
-  if (!client_.is_settled()) return;
+  if (!too_late && !client_.is_settled()) return;
   client_.stop();
   started_ = false;
-  retired_.clear();
-  keep(present_);
-  g_printerr("cerberusd: MQTT: what removed cameras or parts left at the broker is cleared\n");
+  retired_.erase(retired_.begin());
+  std::erase_if(all_, [&](const LeftTopics& one) { return one.broker == broker; });
+  all_ = with_present(std::move(all_), settings_);
+  keep();
+  if (too_late)
+    g_printerr("cerberusd: MQTT: the broker %s does not answer: what cameras left there stays\n",
+               host.c_str());
+  else
+    g_printerr("cerberusd: MQTT: what removed cameras or parts left at the broker%s is cleared\n",
+               is_present ? "" : (' ' + host).c_str());
 }
 
-void RetiredTopics::keep(const Topics& topics) const {
-  const std::string text = text_of(topics);
+void RetiredTopics::keep() const {
+  const std::string text = text_of(all_);
   g_autoptr(GError) error = nullptr;
   if (!g_file_set_contents_full(path_.c_str(), text.data(), static_cast<gssize>(text.size()),
                                 G_FILE_SET_CONTENTS_CONSISTENT, 0600, &error))

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What a broker retains is true: motion ends where frames stop and where the pipeline ends; a recorder that fails says so, on
 the page and in the log, too; a camera, a head and a recorder that leave the configuration take their topics and what Home
-Assistant found with them, by SIGHUP and by a restart. Orders whose numbers are none of a head's are refused, with an answer.
+Assistant found with them, by SIGHUP and by a restart, and so does all that is left at another broker. Orders whose numbers are none of a head's are refused, with an answer.
 Argument: the program cerberusd. Skipped where mosquitto is not installed."""
 import json
 import pathlib
@@ -134,8 +134,7 @@ def main():
         folder.chmod(0o755)
         (folder / 'mosquitto.conf').write_text(f'listener {port} 127.0.0.1\nallow_anonymous true\npersistence false\n')
         file, log = folder / 'robot.toml', folder / 'log'
-        write = lambda *cameras: file.write_text(robot_head(page.port, port) + PUBLISHED
-                                                 + ''.join(cameras))
+        write = lambda *cameras, to=port: file.write_text(robot_head(page.port, to) + PUBLISHED + ''.join(cameras))
         running = []
 
         def start():
@@ -180,6 +179,27 @@ def main():
             assert fresh(port, 'front') == {}, fresh(port, 'front')
             client = Client(port)  # the broker closed the one before: the last one has the same name
             client.wait('the other camera', lambda: found('gate', 'binary_sensor/motion'))
+
+            # Another broker, while it runs and by a restart: nothing stays at the one before.
+            other = free_port()
+            (folder / 'other').mkdir()
+            (folder / 'other' / 'mosquitto.conf').write_text(f'listener {other} 127.0.0.1\nallow_anonymous true\npersistence false\n')
+            running.append(start_broker(folder / 'other', other))
+            write(camera('gate'), to=other)
+            robot.send_signal(signal.SIGHUP)
+            cleared = 'what removed cameras or parts left at the broker 127.0.0.1 is cleared'
+            wait_for_log(log, cleared)
+            assert fresh(port, 'gate') == {}, fresh(port, 'gate')
+            client = Client(other)
+            client.wait('the camera at the other broker', lambda: found('gate', 'binary_sensor/motion'))
+            robot.send_signal(signal.SIGTERM)
+            assert robot.wait(PATIENCE) == 0
+            write(camera('gate'))
+            robot = start()
+            wait_for_log(log, cleared)
+            assert fresh(other, 'gate') == {}, fresh(other, 'gate')
+            client = Client(port)
+            client.wait('the camera at the first broker', lambda: found('gate', 'binary_sensor/motion'))
             robot.send_signal(signal.SIGTERM)
             assert robot.wait(PATIENCE) == 0
         except BaseException:

@@ -676,8 +676,6 @@ START_TEST(what_a_camera_or_a_part_leaves_at_the_broker_is_known_when_it_leaves)
   ck_assert(all.contains("cerberus/back/state") && all.contains("cerberus/front/pantilt"));
   ck_assert(all.contains("homeassistant/binary_sensor/cerberus_front/pir_1/config"));
   ck_assert(!all.contains("homeassistant/binary_sensor/cerberus_front/pir_2/config"));
-  ck_assert(topics_of(text_of(all)) == all && topics_of("").empty() &&
-            topics_of("a\n\nb") == (Topics{"a", "b"}));
   settings.cameras = {front};
   settings.cameras[0].head.reset();
   const Topics left = retained_topics(settings);
@@ -688,6 +686,39 @@ START_TEST(what_a_camera_or_a_part_leaves_at_the_broker_is_known_when_it_leaves)
   }
   settings.mqtt.reset();
   ck_assert(retained_topics(settings).empty());
+}
+END_TEST
+
+START_TEST(another_broker_leaves_all_topics_at_the_one_before_and_none_that_is_the_same) {
+  Settings settings;
+  settings.mqtt = Properties{{"host", "old"}, {"username", "x y"}, {"discovery-prefix", "homeassistant"}};
+  settings.cameras.resize(1);
+  settings.cameras[0].name = "front";
+  const Topics topics = retained_topics(settings);
+  // As an older version wrote it: of the broker in the file.
+  std::vector<LeftTopics> all = with_present(left_topics_of("a\n\nb\n"), settings);
+  ck_assert_uint_eq(all.size(), 1);
+  ck_assert(all[0].broker == (Properties{{"host", "old"}, {"username", "x y"}}));
+  std::vector<LeftTopics> retired = retired_topics(all, settings);
+  ck_assert(retired.size() == 1 && retired[0].topics == (Topics{"a", "b"}));
+  // What is written is read again.
+  const std::string text = text_of(all);
+  ck_assert(text_of(left_topics_of(text)) == text && left_topics_of("").empty());
+  ck_assert(left_topics_of("\tbroker\thost\t\n\tbrokerage\nx").size() == 2);
+  // The same broker by the port that it has anyway, and by another name of the user.
+  settings.mqtt = Properties{{"host", "old"}, {"port", "1883"}, {"discovery-prefix", "homeassistant"}};
+  ck_assert_uint_eq(with_present(all, settings).size(), 1);
+  settings.mqtt = Properties{{"host", "new"}, {"discovery-prefix", "homeassistant"}};
+  all = with_present(all, settings);
+  ck_assert_uint_eq(all.size(), 2);
+  retired = retired_topics(all, settings);
+  ck_assert_uint_eq(retired.size(), 1);
+  ck_assert(retired[0].broker == (Properties{{"host", "old"}, {"username", "x y"}}));
+  Topics everything = topics;
+  everything.insert({"a", "b"});
+  ck_assert(retired[0].topics == everything);
+  settings.mqtt.reset();
+  ck_assert_uint_eq(retired_topics(with_present(all, settings), settings).size(), 2);
 }
 END_TEST
 
@@ -735,5 +766,6 @@ int main() {
                          one_encoder_makes_the_plain_picture_of_the_recorder_and_of_all_clients,
                          another_configuration_is_the_properties_that_differ_or_another_pipeline,
                          what_a_camera_or_a_part_leaves_at_the_broker_is_known_when_it_leaves,
+                         another_broker_leaves_all_topics_at_the_one_before_and_none_that_is_the_same,
                          a_part_is_tried_again_after_1_2_4_to_60_seconds_and_after_a_sound_minute_after_1});
 }
