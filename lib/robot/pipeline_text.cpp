@@ -113,7 +113,7 @@ class Writer {
         add("  v4l2src name=source ! ");
         add(source_.motion_jpeg ? "image/jpeg" : "video/x-raw");
         add(size_and_rate());
-        if (source_.motion_jpeg) add(" ! jpegdec");
+        if (source_.motion_jpeg) add(" ! jpegdec name=decoder");
         set("source", "device", source_.device);
         break;
       case SourceKind::rtsp:
@@ -145,7 +145,7 @@ class Writer {
       encoded(true);
       add("  encoded. ! queue");
     }
-    add(std::string(" ! ") + with.decoder);
+    add(std::string(" ! ") + with.decoder + " name=decoder");
   }
 
   // The plain picture, encoded once for the recorder, the clients of the server, and what else is `decoded`.

@@ -346,7 +346,7 @@ void Camera::closed() {
 void Camera::tick() {
   const Clock::time_point now = Clock::now();
   const guint64 frames = frames_;
-  if (frames != counted_) last_frame_ = now;
+  if (came_.exchange(false) || frames != counted_) last_frame_ = now;
   const double interval = std::chrono::duration<double>(now - last_tick_).count();
   if (pipeline_ == nullptr)
     rate_ = 0;

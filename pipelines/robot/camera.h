@@ -152,6 +152,8 @@ class Camera {
   void send_asked_picture();
   void drop_frames(const char* queue, std::atomic<bool>& pass);
   void drop_late_frames();
+  template <bool encoded>
+  static GstPadProbeReturn drop_if_late(GstPad* pad, GstPadProbeInfo* info, gpointer camera);
   GstElement* element(const char* name) const;
   std::string part_of(GstObject* source) const;
   void on_message(GstMessage* message);
@@ -194,6 +196,7 @@ class Camera {
   std::atomic<gint64> latency_ = 0;       // ns
   LateFrames late_;                       // streaming thread
   std::atomic<guint64> late_frames_ = 0;  // dropped and not reported yet
+  std::atomic<bool> came_ = false;        // a frame, late or not, since the last tick
   std::string stage_ = "picture";
   std::shared_ptr<Newest> newest_;
 };

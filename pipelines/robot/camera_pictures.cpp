@@ -45,27 +45,35 @@ void Camera::drop_frames(const char* queue, std::atomic<bool>& pass) {
       &pass, nullptr);
 }
 
-// In front of the detection, so that what is late costs next to nothing and the next frame is younger. A file waits for
-// its reader and is never late.
+// In front of the decoder and of the detection, so that what is late costs next to nothing and the next frame is younger.
+// One thread goes through both. A file waits for its reader and is never late.
 void Camera::drop_late_frames() {
   const SourceKind kind = settings_.source.kind;
   if (kind == SourceKind::file || kind == SourceKind::world) return;
   late_ = {};
-  g_autoptr(GstElement) detect = element("detect");
-  g_autoptr(GstPad) pad = gst_element_get_static_pad(detect, "sink");
-  gst_pad_add_probe(
-      pad, GST_PAD_PROBE_TYPE_BUFFER,
-      [](GstPad* pad, GstPadProbeInfo* info, gpointer data) {
-        auto& camera = *static_cast<Camera*>(data);
-        const std::chrono::nanoseconds now(std::chrono::steady_clock::now().time_since_epoch());
-        const std::chrono::nanoseconds held =
-            camera.settings_.source.kind == SourceKind::rtsp ? kNetworkLatency : std::chrono::nanoseconds(0);
-        const std::chrono::nanoseconds age(age_of(pad, GST_PAD_PROBE_INFO_BUFFER(info)));
-        const bool drop = camera.late_.drop(age - held, now);
-        camera.late_frames_ += camera.late_.report(now);
-        return drop ? GST_PAD_PROBE_DROP : GST_PAD_PROBE_OK;
-      },
-      this, nullptr);
+  for (const char* name : {"decoder", "detect"}) {
+    g_autoptr(GstElement) found = element(name);
+    if (found == nullptr) continue;  // the source's frames are not encoded
+    g_autoptr(GstPad) pad = gst_element_get_static_pad(found, "sink");
+    const bool encoded = g_str_equal(name, "decoder");
+    gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_BUFFER, encoded ? drop_if_late<true> : drop_if_late<false>,
+                      this, nullptr);
+  }
+}
+
+template <bool encoded>
+GstPadProbeReturn Camera::drop_if_late(GstPad* pad, GstPadProbeInfo* info, gpointer data) {
+  auto& camera = *static_cast<Camera*>(data);
+  GstBuffer* buffer = GST_PAD_PROBE_INFO_BUFFER(info);
+  const std::chrono::nanoseconds now(std::chrono::steady_clock::now().time_since_epoch());
+  const std::chrono::nanoseconds held =
+      camera.settings_.source.kind == SourceKind::rtsp ? kNetworkLatency : std::chrono::nanoseconds(0);
+  const std::chrono::nanoseconds age = std::chrono::nanoseconds(age_of(pad, buffer)) - held;
+  const bool keyframe = !GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DELTA_UNIT);
+  const bool drop = encoded ? camera.late_.drop_encoded(age, keyframe, now) : camera.late_.drop(age, now);
+  camera.late_frames_ += camera.late_.report(now);
+  camera.came_ = true;
+  return drop ? GST_PAD_PROBE_DROP : GST_PAD_PROBE_OK;
 }
 
 void Camera::connect() {

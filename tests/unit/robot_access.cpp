@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "robot/page/access.h"
 
+#include <algorithm>
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,7 @@ using namespace cerberus::robot;
 using std::chrono::hours;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using namespace std::chrono_literals;
 using Kind = PageCommand::Kind;
 
 namespace {
@@ -127,6 +130,56 @@ START_TEST(late_frames_are_dropped_but_for_one_a_second_and_reported_once_a_minu
   ck_assert(!late.drop(seconds(4), at(1000)));  // one a second
   ck_assert(late.report(at(1099)) == 0 && late.report(at(1100)) == 2 && late.report(at(1100)) == 0);
   ck_assert(late.drop(seconds(4), at(1500)) && late.report(at(61099)) == 0 && late.report(at(61100)) == 1);
+}
+END_TEST
+
+// A camera of 25 frames a second, a keyframe every 2 s, and a decoder that needs so long for a frame.
+struct Decoder {
+  explicit Decoder(milliseconds needs) : needs(needs) {}
+  const milliseconds needs;
+  milliseconds held_up{0};  // nothing comes until then
+  LateFrames late;
+  std::vector<milliseconds> ages;  // of the pictures, when they are decoded
+  milliseconds longest_pause{0};   // between two of them
+
+  void run(seconds length) {
+    milliseconds time{0}, last{0};
+    bool has_reference = false;
+    for (int k = 0; k * 40ms < length; ++k) {
+      const bool keyframe = k % 50 == 0;
+      time = std::max({time, milliseconds(k * 40), held_up});
+      if (late.drop_encoded(time - k * 40ms, keyframe, time + 1h)) {
+        has_reference = false;
+        continue;
+      }
+      ck_assert_msg(has_reference || keyframe, "frame %d follows one that was dropped", k);
+      has_reference = true;
+      time += needs;
+      longest_pause = std::max(longest_pause, time - last);
+      last = time;
+      ages.push_back(time - k * 40ms);
+    }
+  }
+};
+
+START_TEST(a_decoder_that_is_too_slow_skips_to_the_next_keyframe_and_a_fast_one_makes_up_for_a_pause) {
+  Decoder slow(100ms);
+  slow.run(60s);
+  // .5 s late, and 1 s of patience in which the delay grows by .6 s; without dropping it would be 90 s at the end.
+  ck_assert_int_le(std::ranges::max(slow.ages).count(), 500 + 600 + 2 * 100);
+  ck_assert_int_ge(static_cast<int>(slow.ages.size()), 60 * 10 / 2);
+  ck_assert_int_le(slow.longest_pause.count(), 2000 + 100);
+  ck_assert_uint_eq(slow.late.report(2h), 60 * 25 - slow.ages.size());
+  Decoder fast(5ms);
+  fast.held_up = 3s;
+  fast.run(60s);
+  ck_assert_uint_eq(fast.ages.size(), 60 * 25);
+  ck_assert_int_eq(fast.ages.back().count(), 5);
+  // A source whose frames are always late is seen all the same, for a second of each four.
+  LateFrames late;
+  int decoded = 0;
+  for (int k = 0; k < 60 * 25; ++k) decoded += !late.drop_encoded(700ms, k % 50 == 0, 1h + k * 40ms);
+  ck_assert_int_ge(decoded, 60 * 25 / 4);
 }
 END_TEST
 
@@ -441,29 +494,31 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "robot access", {
-                          every_message_is_read_letter_by_letter,
-                          a_viewer_may_watch_an_operator_steer_and_the_owner_begin_and_end_privacy,
-                          only_the_entrance_is_open_and_what_changes_needs_more,
-                          late_frames_are_dropped_but_for_one_a_second_and_reported_once_a_minute,
-                          a_device_is_known_by_its_hash_until_it_is_revoked,
-                          a_trusted_proxy_tells_whose_request_it_hands_on_and_nobody_else_does,
-                          another_name_for_this_machine_is_refused,
-                          an_origin_is_the_pages_own_or_configured,
-                          a_session_ends_after_12_idle_hours_after_a_week_and_when_it_is_ended,
-                          of_too_many_sessions_the_one_used_longest_ago_ends,
-                          after_five_wrong_passwords_an_address_waits_twice_as_long_each_time,
-                          many_addresses_together_are_slowed_down_too,
-                          a_right_password_of_one_account_does_not_make_up_for_wrong_ones_of_another,
-                          log_ins_that_were_right_slow_no_one_down,
-                          all_addresses_of_an_ipv6_network_wait_together,
-                          a_range_of_bytes_is_answered_in_part_as_a_whole_or_refused,
-                          a_drive_of_the_base_is_repeated_and_ends_after_half_a_second,
-                          after_a_stop_by_another_session_the_one_that_moved_must_let_go_first,
-                          one_session_steers_until_it_was_silent_for_two_seconds,
+      "robot access",
+      {
+          every_message_is_read_letter_by_letter,
+          a_viewer_may_watch_an_operator_steer_and_the_owner_begin_and_end_privacy,
+          only_the_entrance_is_open_and_what_changes_needs_more,
+          late_frames_are_dropped_but_for_one_a_second_and_reported_once_a_minute,
+          a_decoder_that_is_too_slow_skips_to_the_next_keyframe_and_a_fast_one_makes_up_for_a_pause,
+          a_device_is_known_by_its_hash_until_it_is_revoked,
+          a_trusted_proxy_tells_whose_request_it_hands_on_and_nobody_else_does,
+          another_name_for_this_machine_is_refused,
+          an_origin_is_the_pages_own_or_configured,
+          a_session_ends_after_12_idle_hours_after_a_week_and_when_it_is_ended,
+          of_too_many_sessions_the_one_used_longest_ago_ends,
+          after_five_wrong_passwords_an_address_waits_twice_as_long_each_time,
+          many_addresses_together_are_slowed_down_too,
+          a_right_password_of_one_account_does_not_make_up_for_wrong_ones_of_another,
+          log_ins_that_were_right_slow_no_one_down,
+          all_addresses_of_an_ipv6_network_wait_together,
+          a_range_of_bytes_is_answered_in_part_as_a_whole_or_refused,
+          a_drive_of_the_base_is_repeated_and_ends_after_half_a_second,
+          after_a_stop_by_another_session_the_one_that_moved_must_let_go_first,
+          one_session_steers_until_it_was_silent_for_two_seconds,
 #if HAVE_ARGON2
-                          a_password_counts_for_its_role_alone_and_survives_a_restart,
-                          the_one_time_password_counts_for_the_owner_until_a_password_is_set,
+          a_password_counts_for_its_role_alone_and_survives_a_restart,
+          the_one_time_password_counts_for_the_owner_until_a_password_is_set,
 #endif
-                      });
+      });
 }

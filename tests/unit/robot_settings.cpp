@@ -564,7 +564,7 @@ START_TEST(each_kind_of_camera_has_its_source_at_the_size_and_rate_that_are_aske
   ck_assert(says(v4l2.line, "v4l2src name=source ! video/x-raw" + caps));
   ck_assert(assigned(v4l2, "source", "device") == "/dev/video2");
   ck_assert(says(text("kind = \"v4l2\"\ndevice = \"/dev/video2\"\nmotion-jpeg = true\n" + size).line,
-                 "v4l2src name=source ! image/jpeg" + caps + "! jpegdec"));
+                 "v4l2src name=source ! image/jpeg" + caps + "! jpegdec name=decoder"));
   const PipelineText board =
       text("kind = \"libcamera\"\ndevice = \"/base/soc/i2c0mux/i2c@1/imx708@1a\"\n" + size);
   ck_assert(says(board.line, "libcamerasrc name=source ! video/x-raw" + caps));
