@@ -6,6 +6,7 @@
 #include <sqlite3.h>
 #include <sys/stat.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -322,6 +323,42 @@ START_TEST(two_recorders_write_into_one_index) {
 }
 END_TEST
 
+int change(const char* path) {
+  sqlite3* database = nullptr;
+  int result = sqlite3_open(path, &database);
+  if (result == SQLITE_OK)
+    result = sqlite3_exec(database, "UPDATE recordings SET keep = 0", nullptr, nullptr, nullptr);
+  sqlite3_close(database);
+  return result;
+}
+
+// This program again, which another process of the system is: it opens the database, changes a row and closes it.
+void let_another_program_change(const std::string& path) {
+  const std::string own = std::filesystem::read_symlink("/proc/self/exe");
+  ck_assert_int_eq(std::system(('"' + own + "\" change \"" + path + '"').c_str()), 0);
+}
+
+// A process that opens a file and closes it loses all its locks on it; the program that comes then takes itself for the
+// last one and deletes the journal.
+START_TEST(what_is_recorded_after_another_program_had_the_index_is_in_it) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path + "/i.sqlite";
+  Index recorder, page, reader;
+  open(recorder, path);
+  Recording a = row("a.mp4"), b = row("b.mp4");
+  bool taken = false;
+  ck_assert(recorder.add(a, taken).empty());
+  open(page, path);
+  ck_assert(page.set_keep("a.mp4", true).empty());
+  let_another_program_change(path);
+  ck_assert(std::filesystem::exists(path + "-wal"));
+  ck_assert(recorder.add(b, taken).empty());
+  ck_assert(reader.open_to_read(path).empty());
+  ck_assert_uint_eq(rows_of(reader).size(), 2);
+  ck_assert_str_eq(ask(path, "SELECT count(*) FROM recordings").c_str(), "2|");
+}
+END_TEST
+
 START_TEST(an_index_of_a_newer_version_is_refused_and_stays_as_it_is) {
   const TemporaryFolder folder;
   const std::string path = folder.path + "/i.sqlite";
@@ -379,7 +416,8 @@ START_TEST(any_bytes_are_refused_or_read_and_never_end_the_program) {
 }
 END_TEST
 
-int main() {
+int main(int argc, char** argv) {
+  if (argc == 3) return change(argv[2]);
   Suite* suite = suite_create("index");
   TCase* cases = tcase_create("index");
   tcase_set_timeout(cases, 60);  // rows are written through to the disk
@@ -389,7 +427,8 @@ int main() {
         a_page_of_a_hundred_thousand_rows_costs_what_a_page_of_few_does,
         the_database_is_one_that_others_read_by_its_documented_columns, a_file_has_one_row,
         keep_is_what_was_set_last_and_updates_leave_it, a_row_that_was_removed_meanwhile_is_written_anew,
-        two_recorders_write_into_one_index, an_index_of_a_newer_version_is_refused_and_stays_as_it_is,
+        two_recorders_write_into_one_index, what_is_recorded_after_another_program_had_the_index_is_in_it,
+        an_index_of_a_newer_version_is_refused_and_stays_as_it_is,
         a_file_that_is_no_database_is_damaged_and_one_that_cannot_be_made_is_not,
         any_bytes_are_refused_or_read_and_never_end_the_program})
     tcase_add_test(cases, test);

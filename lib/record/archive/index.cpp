@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "record/archive/index.h"
 
-#include <fcntl.h>
 #include <sqlite3.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -143,21 +142,27 @@ std::string Index::run(const char* sql) {
 std::string Index::open(const std::string& path, bool& damaged) {
   close();
   damaged = false;
-  // Made here, so that its mode is ours; SQLite gives its journal files the same one.
-  const int made = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0640);
-  if (made < 0) return "the index of recordings " + in_quotes(path) + ": " + std::strerror(errno);
-  struct stat about{};
-  if (fstat(made, &about) == 0) file_ = {about.st_dev, about.st_ino};
-  ::close(made);
-  sqlite3* database = nullptr;
-  const int result =
-      sqlite3_open_v2(path.c_str(), &database, SQLITE_OPEN_READWRITE | SQLITE_OPEN_FULLMUTEX, nullptr);
-  database_.reset(database);
-  if (result != SQLITE_OK) {
-    std::string text = database ? fault() : "out of memory";
+  const auto refuse = [&](int error) {
     close();
-    return text;
-  }
+    return "the index of recordings " + in_quotes(path) + ": " + std::strerror(error);
+  };
+  // The file is never opened here: to close it would end the locks that other connections of this process have on it
+  // (fcntl(2)), and another program would then take their journal for its own and delete it.
+  struct stat about{};
+  const bool is_new = stat(path.c_str(), &about) != 0;
+  if (is_new && errno != ENOENT) return refuse(errno);
+  if (!is_new && !S_ISREG(about.st_mode)) return refuse(S_ISDIR(about.st_mode) ? EISDIR : EINVAL);
+  if (!is_new && access(path.c_str(), R_OK | W_OK) != 0) return refuse(errno);
+  sqlite3* database = nullptr;
+  const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_FULLMUTEX;
+  const int result = sqlite3_open_v2(path.c_str(), &database, flags, nullptr);
+  database_.reset(database);
+  if (!database) return refuse(ENOMEM);
+  if (result != SQLITE_OK)
+    return refuse(sqlite3_system_errno(database) ? sqlite3_system_errno(database) : EIO);
+  // SQLite gives its journal files the same mode; they are not there yet.
+  if (is_new && chmod(path.c_str(), 0640) != 0) return refuse(errno);
+  if (stat(path.c_str(), &about) == 0) file_ = {about.st_dev, about.st_ino};
   sqlite3_busy_timeout(database, kPatience);
   sqlite3_extended_result_codes(database, 1);
   // FULL: what is acknowledged outlasts a power cut. A schema that calls functions of its own is not trusted.
