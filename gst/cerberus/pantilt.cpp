@@ -14,6 +14,8 @@ constexpr cerberus::Field kFields[] = {
     {"tilt", Type::number, offsetof(CerberusPantilt, pose.tilt)},
     {"running-time", Type::time, offsetof(CerberusPantilt, pose.valid_from)},
 };
+constexpr cerberus::Field kWaits[] = {
+    {"waits-for-order", Type::flag, offsetof(CerberusPantilt, waits_for_order)}};
 
 void at_rest(CerberusPantilt& pantilt) {
   cerberus_pose_init(&pantilt.pose);
@@ -30,6 +32,7 @@ void write(GstStructure* to, const CerberusPantilt& pantilt) {
   written.pose.head = cerberus::head_of(pantilt.pose);
   // The time of a message is its stamp's.
   cerberus::write_fields(to, std::span(kFields).first<4>(), &written);
+  cerberus::write_fields(to, kWaits, &written);
   const std::string reason = cerberus::printable(pantilt.reason ? pantilt.reason : "");
   gst_structure_set(to, "reason", G_TYPE_STRING, reason.c_str(), nullptr);
 }
@@ -37,6 +40,7 @@ void write(GstStructure* to, const CerberusPantilt& pantilt) {
 bool read(const GstStructure* from, CerberusPantilt& pantilt) {
   const gchar* reason = gst_structure_get_string(from, "reason");
   pantilt.reason = g_strdup(reason);
+  cerberus::read_known_fields(from, kWaits, &pantilt);
   return reason && cerberus::read_fields(from, kFields, &pantilt);
 }
 

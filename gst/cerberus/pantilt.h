@@ -13,7 +13,7 @@ G_BEGIN_DECLS
  *
  * Name of the element message that a head posts when its state changes. Fields: those of #CerberusStamp, `state`
  * (string, a nick of #CerberusPantiltState), `reason` (string, for a user), `head` (string), `pan`, `tilt` (double,
- * degrees).
+ * degrees), `waits-for-order` (boolean: it stands, and only the next order by hand, or `auto`, moves it).
  */
 #define CERBERUS_MESSAGE_PANTILT "cerberus-pantilt"
 
@@ -50,6 +50,7 @@ typedef enum {
  * @state: what the head does
  * @reason: (nullable): why, in words for a user; owned by a boxed structure, borrowed in one on the stack
  * @pose: where it looks; of a message its name, pan, tilt and the time from which it is valid are known
+ * @waits_for_order: it stands, and only the next order by hand, or `auto`, moves it
  *
  * The state of a pan-tilt head.
  */
@@ -57,6 +58,7 @@ typedef struct _CerberusPantilt {
   CerberusPantiltState state;
   gchar* reason;
   CerberusPose pose;
+  gboolean waits_for_order;
 
   /*< private >*/
   gpointer _cerberus_reserved[GST_PADDING];

@@ -28,7 +28,8 @@ enum class HeadState : std::uint8_t {
 };
 struct Status {
   HeadState state = HeadState::stopped;
-  std::string reason;  // for a user
+  std::string reason;            // for a user
+  bool waits_for_order = false;  // it stands until the next order by hand, or until it is given back
   motion::Pose pose;
   motion::Time time{};
 };

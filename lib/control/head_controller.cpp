@@ -241,8 +241,10 @@ void HeadController::publish(const std::vector<Pose>& poses, Time until, Deferre
 }
 
 void HeadController::report(HeadState state, std::string reason, Time head, DeferredNotifications& out) {
-  if (state == status_.state && reason == status_.reason) return;
-  status_ = {state, std::move(reason), running(history_.at(head)), std::max(Time::zero(), head - epoch_)};
+  const bool waits = manual_.waits_for_order();
+  if (state == status_.state && reason == status_.reason && waits == status_.waits_for_order) return;
+  status_ = {state, std::move(reason), waits, running(history_.at(head)),
+             std::max(Time::zero(), head - epoch_)};
   out.add(status_);
 }
 

@@ -23,6 +23,8 @@ class ManualOverride {
   // The two axes as commanded; its time is not set. A move and a turn have an order's number each.
   const drivers::HeadCommand& command() const { return command_; }
   const char* reason() const { return reason_; }  // for a user
+  // The head stands, and nothing but the next command or the end of the override moves it.
+  bool waits_for_order() const { return active_ && command_.order == 0; }
 
   // Commands a position, radians, within the limits. relative: from the last commanded position, or from `here` without
   // one. Returns false and changes nothing if a number is not finite, or during an emergency stop.

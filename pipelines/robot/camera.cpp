@@ -166,6 +166,9 @@ void Camera::on_report(const GstStructure* report) {
     const gchar* reason = gst_structure_get_string(report, "reason");
     head_state_ = state;
     head_reason_ = reason ? reason : "";
+    gboolean waits = FALSE;
+    gst_structure_get_boolean(report, "waits-for-order", &waits);
+    head_waits_ = waits;
   }
   if (gst_structure_has_name(report, "cerberus-recording")) {
     gboolean last = FALSE;
@@ -334,6 +337,7 @@ void Camera::closed() {
   rate_ = 0;
   head_state_.clear();
   head_reason_.clear();
+  head_waits_ = false;
   if (again_ && wanted_) {
     start();
   } else if (wanted_) {

@@ -87,14 +87,12 @@ class Camera {
   // Whether frames come, or none are expected: what feeds the watchdog.
   bool is_sound() const;
 
-  // What the head does (`state` of cerberus-pantilt), and whether an event is being recorded.
+  // What the head does and why (`state` and `reason` of cerberus-pantilt), and whether an event is being recorded.
   const std::string& head_state() const { return head_state_; }
+  const std::string& head_reason() const { return head_reason_; }
   bool is_recording() const { return recording_ && recording_fault_.empty(); }
-  // The head stands because of an order to stop, or of its emergency stop.
-  bool is_stopped_by_hand() const {
-    return kept_stopped_ || head_state_ == "stopped" ||
-           (head_state_ == "manual" && head_reason_.ends_with(": stop"));
-  }
+  // The head stands until the next order by hand, or until it is given back.
+  bool waits_for_order() const { return kept_stopped_ || head_waits_; }
 
   void set_on_publish(OnPublish on_publish) { on_publish_ = std::move(on_publish); }
   // How often a recording began, ended, failed or was deleted by retention.
@@ -178,6 +176,7 @@ class Camera {
   Parts parts_;
   Backoff camera_backoff_, head_backoff_, recorder_backoff_;
   std::string fault_, head_state_, head_reason_;
+  bool head_waits_ = false;  // `waits-for-order` of cerberus-pantilt
   bool recording_ = false;
   guint64 changes_of_recordings_ = 0;
   std::string recording_fault_;      // of the recorder that runs, or why there is none

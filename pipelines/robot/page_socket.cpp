@@ -280,7 +280,8 @@ std::string PageServer::state() {
         .key("state")
         .string(robot::name(camera->state()));
     line.key("fault").text(camera->fault()).key("rate").fixed(camera->frames_a_second(), 1);
-    line.key("head").text(camera->head_state()).key("stopped").boolean(camera->is_stopped_by_hand());
+    line.key("head").text(camera->head_state()).key("head-reason").text(camera->head_reason());
+    line.key("stopped").boolean(camera->waits_for_order());
     line.key("recording").boolean(camera->is_recording());
     line.key("recording-fault").text(camera->recording_fault());
     line.key("settings").open('{');

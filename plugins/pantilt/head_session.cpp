@@ -50,6 +50,7 @@ struct Posting {
     pantilt.pose = pose_of(head, status.pose);
     std::string reason = status.reason;
     pantilt.reason = reason.data();
+    pantilt.waits_for_order = status.waits_for_order;
     const CerberusStamp stamp = stamps.at(clock_time(status.time));
     gst_element_post_message(sink, cerberus_message_new_pantilt(GST_OBJECT(sink), &stamp, &pantilt));
   }

@@ -55,7 +55,8 @@
  * warning and the state `fault`, until it answers again: the video goes on.
  *
  * Element messages: `cerberus-pantilt` with `state` (`stopped`, `tracking`, `turning`, `searching`, `zeroing`,
- * `holding`, `manual`, `limited`, `fault`, `homing`) and `reason` at every change of either.
+ * `holding`, `manual`, `limited`, `fault`, `homing`), `reason` and `waits-for-order` (boolean: only the next signal that
+ * moves the head, or `auto`, ends its rest) at every change of one of them.
  *
  * The pose of a real head that reports none is reckoned from its commands and corrected by the camera motion on the
  * frames (`motiondetect`, `cameramotion`); a head that has lost its reference looks for it (`homing`). One whose reports

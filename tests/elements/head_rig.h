@@ -100,6 +100,7 @@ inline int way_of(const std::string& line) {
 
 struct Message {
   std::string state, reason;
+  bool waits = false;  // for an order
   double pan;
 };
 
@@ -156,6 +157,9 @@ class Rig {
         m.state = gst_structure_get_string(s, "state");
         m.reason = gst_structure_get_string(s, "reason");
         gst_structure_get_double(s, "pan", &m.pan);
+        gboolean waits = FALSE;
+        fail_unless(gst_structure_get_boolean(s, "waits-for-order", &waits));
+        m.waits = waits;
       }
       gst_message_unref(message);
     }

@@ -97,6 +97,7 @@ GST_START_TEST(when_frames_stay_away_the_head_stops) {
   const auto messages = rig.messages();
   fail_unless_equals_string(messages.back().state.c_str(), "stopped");
   fail_unless(messages.back().reason.find("no frame came for 300 ms") != std::string::npos);
+  fail_if(messages.back().waits);
   // The next frame is obeyed.
   rig.push(frame_with(CERBERUS_FUSION_TURN_LEFT, 900 * GST_MSECOND));
   const std::string states = rig.states();
@@ -133,6 +134,7 @@ GST_START_TEST(when_frames_stay_away_an_order_is_over) {
   auto messages = rig.messages();
   fail_unless_equals_string(messages.back().state.c_str(), "stopped");
   fail_unless_equals_string(messages.back().reason.c_str(), "no frame came for 300 ms");
+  fail_unless(messages.back().waits);
   // The head is still in the application's hand.
   rig.push(frame_with(CERBERUS_FUSION_TURN_LEFT, GST_SECOND));
   messages = rig.messages();

@@ -150,13 +150,14 @@ def owner_visits(driver, port, one_time, folder, robot, process):
     # An arrow key turns by hand, STOP keeps it so, Automatic gives the head back.
     driver.execute_cdp_cmd('Input.dispatchKeyEvent', {'type': 'keyDown', 'key': 'ArrowRight', 'code': 'ArrowRight'})
     page.wait('turned by hand', lambda: 'manual' in page.status() or 'limited' in page.status())
-    driver.execute_cdp_cmd('Input.dispatchKeyEvent', {'type': 'keyUp', 'key': 'ArrowRight', 'code': 'ArrowRight'})
     assert not page.one('stopped').is_displayed()
+    driver.execute_cdp_cmd('Input.dispatchKeyEvent', {'type': 'keyUp', 'key': 'ArrowRight', 'code': 'ArrowRight'})
     page.one('stop').click()
     page.wait('it says that it is stopped', lambda: page.one('stopped').is_displayed() and 'Head\nstopped' in page.status())
     driver.save_screenshot(str(folder / 'stopped.png'))
     page.one('auto').click()
     page.wait('automatic', lambda: 'manual' not in page.status() and not page.one('stopped').is_displayed())
+    why_it_stands(driver)
     values_in_force(driver, page)
     lost_connection(driver, page)
     silent_robot(driver, page, process)
@@ -251,6 +252,19 @@ def kiosk(driver, port, program, folder, restart):
     restart()
     page.wait('the connection is lost', lambda: 'lost' in page.one('veil').text)
     page.wait('a picture after the restart', page.has_picture)
+
+
+def why_it_stands(driver):
+    """What the watchdog stopped goes on by itself; everything else waits for an order, and says why."""
+    says = lambda stopped, head, reason: driver.execute_script(
+        'return whyStands({state: "running", stopped: arguments[0], head: arguments[1], "head-reason": arguments[2]})', stopped, head, reason)
+    assert says(False, 'tracking', 'track 4') == '' == says(False, 'fault', 'no answer')
+    by_itself = says(False, 'stopped', 'no frame came for 500 ms')
+    assert 'no frame came for 500 ms' in by_itself and 'by itself' in by_itself and 'Stopped' not in by_itself, by_itself
+    assert says(True, 'manual', 'manual command: stop').startswith('Stopped. '), says(True, 'manual', 'manual command: stop')
+    waits = says(True, 'manual', 'its order was not repeated')
+    assert 'its order was not repeated' in waits and 'until Automatic' in waits, waits
+    assert 'until Automatic' in says(True, 'stopped', 'no frame came for 500 ms')
 
 
 def follows_by_tap(driver, page):

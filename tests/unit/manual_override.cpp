@@ -50,8 +50,11 @@ START_TEST(relative_moves_add_up_from_the_pose_and_then_from_the_last_command) {
   assert_goes(manual, 15, 6);
   ck_assert(manual.move(radians(10), radians(1), true, looking(7, 5), kLimits));  // on its way to 15
   assert_goes(manual, 25, 7);
+  ck_assert(!manual.waits_for_order());
   manual.stop();
+  ck_assert(manual.waits_for_order());
   ck_assert(manual.move(radians(10), radians(1), true, looking(20, 7), kLimits));
+  ck_assert(!manual.waits_for_order());
   assert_goes(manual, 30, 8);
 }
 END_TEST
@@ -83,6 +86,9 @@ START_TEST(an_expired_command_stands_still_and_stays_an_override) {
   ck_assert(manual.active());
   ck_assert(manual.command().pan.kind == Kind::hold && manual.command().tilt.kind == Kind::hold);
   ck_assert_str_eq(manual.reason(), "late");
+  ck_assert(manual.waits_for_order());
+  ck_assert(manual.end() && !manual.waits_for_order());
+  manual.move(radians(30), 0, false, {}, kLimits);
   ck_assert(manual.end() && !manual.active() && !manual.end());
 }
 END_TEST
@@ -125,9 +131,10 @@ START_TEST(the_emergency_stop_takes_precedence_and_latches) {
   manual.stop();
   manual.expire("over");
   ck_assert_str_eq(manual.reason(), "the emergency stop is pressed");
+  ck_assert(manual.waits_for_order());
   manual.emergency(false);
   ck_assert(manual.authority() == Authority::manual);  // decisions do not have the head back
-  ck_assert(manual.command().pan.kind == Kind::hold);
+  ck_assert(manual.command().pan.kind == Kind::hold && manual.waits_for_order());
   ck_assert(manual.end());
   ck_assert(manual.authority() == Authority::automatic);
 }

@@ -227,6 +227,14 @@ function enableButtons() {
   }
 }
 
+// An empty text: the head does not stand, or the fault says why.
+function whyStands(camera) {
+  const until = 'The head stays so until it is steered, or until Automatic.';
+  const why = camera['head-reason'];
+  if (camera.stopped) return camera.head === 'fault' || !why || why.endsWith(': stop') ? `Stopped. ${until}` : `Stopped: ${why}. ${until}`;
+  return camera.head === 'stopped' && camera.state === 'running' ? `The head stands: ${why}. It goes on by itself.` : '';
+}
+
 function showState() {
   enableButtons();
   at('mode-now').textContent = state.mode;
@@ -242,7 +250,9 @@ function showState() {
     forgetPicture();
     veil(`The camera is ${camera.state}. ${camera.fault}`);
   }
-  at('stopped').hidden = !camera.stopped;
+  const stands = whyStands(camera);
+  at('stopped').hidden = !stands;
+  if (at('stopped').textContent !== stands) at('stopped').textContent = stands;
   showValues(camera);
   const rows = [['Camera', `${camera.state}, ${camera.rate} frames/s`]];
   if (camera.state === 'running' && camera.latency > 0) rows.push(['Latency', `${camera.latency.toFixed(0)} ms until it is analysed`]);
@@ -250,7 +260,10 @@ function showState() {
   if (camera.fault && camera.fault !== camera['recording-fault']) rows.push(['Fault', camera.fault]);
   for (const one of state.cameras)
     if (one['recording-fault']) rows.push(['Recording', `${one.name}: ${one['recording-fault']}`]);
-  if (about().head) rows.push(['Head', camera.stopped ? 'stopped' : camera.head || '\u2013']);
+  if (about().head) {
+    const is = camera.stopped && camera.head !== 'fault' ? 'stopped' : camera.head;
+    rows.push(['Head', is === 'fault' ? `fault: ${camera['head-reason']}` : is || '\u2013']);
+  }
   if (facts && facts.pose) rows.push(['Looks at', `${facts.pose.pan.toFixed(1)}\u00b0, ${facts.pose.tilt.toFixed(1)}\u00b0`]);
   if (facts && facts.fusion) {
     const target = facts.fusion.target === null ? '' : ` ${facts.fusion.target}`;
