@@ -26,7 +26,7 @@ double pan_on(GstBuffer* buffer) {
   return pan;
 }
 
-constexpr scene::World kWorld;
+const scene::World kWorld;
 
 }  // namespace
 
