@@ -57,6 +57,15 @@ std::string check_start(const Limits& limits, double pan, double tilt) {
   return wrong.empty() ? check_start("tilt", limits.tilt, tilt) : wrong;
 }
 
+std::string beyond_reach(const std::string& axis, const AxisLimits& limits, double from, double to,
+                         const std::string& what, const std::string& why) {
+  constexpr double kHair = 1e-6;  // radians: rounding of degrees
+  if (limits.from >= from - kHair && limits.to <= to + kHair) return {};
+  return axis + "-min " + degrees(limits.from) + " and " + axis + "-max " + degrees(limits.to) +
+         " are beyond what " + what + " reaches, " + degrees(from) + " to " + degrees(to) + why + ": set " +
+         axis + "-min and " + axis + "-max";
+}
+
 Reach reach(double bearing, double position, const AxisLimits& limits) {
   const double here = limits.clamp(position);
   if (!std::isfinite(bearing)) return {here, false};

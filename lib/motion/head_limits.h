@@ -47,6 +47,11 @@ std::string check(const Limits& limits);
 // Returns an empty string, or an error text as above that names the position (radians) beyond the stops.
 std::string check_start(const Limits& limits, double pan, double tilt);
 
+// Returns an empty string, or an error text as above for limits of an axis ("pan") beyond what `what` reaches: "the camera".
+// why: what says so, in brackets: " (range)".
+std::string beyond_reach(const std::string& axis, const AxisLimits& limits, double from, double to,
+                         const std::string& what, const std::string& why = {});
+
 struct Reach {
   double position = 0;   // between the stops
   bool limited = false;  // the bearing lies beyond the stops

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "drivers/head/reach.h"
 #include "drivers/onvif/discovery.h"
 #include "drivers/onvif/onvif_head.h"
 #include "heads/password.h"
@@ -57,14 +58,12 @@ std::string read_positive(const OptionWord& word, double most, double& number) {
 
 // "PAN-MIN,PAN-MAX,TILT-MIN,TILT-MAX"
 std::string read_range(const std::string& list, drivers::onvif::Mechanics& mechanics) {
-  std::vector<double> numbers;
-  const auto parts = drivers::split(list, ',');
-  for (const std::string& part : parts)
-    if (const auto number = number_of(part)) numbers.push_back(*number);
-  if (parts.size() != 4 || numbers.size() != 4 || numbers[0] >= numbers[1] || numbers[2] >= numbers[3])
+  const auto range = drivers::parse_range(list);
+  if (!range)
     return "range is four numbers of degrees, PAN-MIN,PAN-MAX,TILT-MIN,TILT-MAX, each MIN below its MAX";
-  mechanics.least = drivers::onvif::Angles{numbers[0], numbers[2]};
-  mechanics.most = drivers::onvif::Angles{numbers[1], numbers[3]};
+  using sensing::degrees;
+  mechanics.least = drivers::onvif::Angles{degrees(range->pan.from), degrees(range->tilt.from)};
+  mechanics.most = drivers::onvif::Angles{degrees(range->pan.to), degrees(range->tilt.to)};
   return {};
 }
 

@@ -116,6 +116,8 @@ MISTAKES = [
     (FRONT + SERVO.format(options="pan='channel=0 range=-60,60'") + 'pan-min = -60\npan-max = 61\n', 9,
      ['pan-max', 'beyond what the servo reaches', '-60 to 60']),
     (FRONT + SERVO.format(options="tilt='channel=0 trim=5'"), 4, ['tilt-min -45', 'beyond what the servo reaches', '-50 to 40']),
+    (FRONT + '[camera.head]\ndriver = "onvif"\ndevice = "http://192.0.2.7"\ndevice-options = "range=-170,170,-30,90"\ntilt-max = 40\n',
+     8, ['tilt-max', 'beyond what the camera reaches', '-30 to 90']),
     ('[[camera]]\nname = "w"\nkind = "world"\nfile = "short"\nstart-pan = 80\n[camera.head]\npan-max = 10\n', 7,
      ['start-pan', '80', 'pan-max']),
 ]
@@ -179,7 +181,7 @@ def check(folder, text):
 def built(text):
     """Whether this build has what a file needs."""
     return all(name in HAS for name, words in {'page': '[page]', 'rtsp': '[rtsp]', 'mqtt': '[mqtt]', 'visca': '"visca"',
-                                               'pelco': '"pelco-d"', 'stepper': '"stepper-gpio"', 'servo': '"servo-pwm"', 'gpio': '"gpio"', 'iio': '"iio"'}.items() if words in text)
+                                               'pelco': '"pelco-d"', 'stepper': '"stepper-gpio"', 'servo': '"servo-pwm"', 'gpio': '"gpio"', 'onvif': '"onvif"', 'iio': '"iio"'}.items() if words in text)
 
 
 def checks(folder):

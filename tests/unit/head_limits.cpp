@@ -108,6 +108,18 @@ START_TEST(no_bearing_leads_beyond_a_stop) {
 }
 END_TEST
 
+START_TEST(limits_beyond_what_a_head_reaches_are_named) {
+  const AxisLimits limits = span(-170, 45);
+  assert_text(beyond_reach("pan", limits, radians(-170), radians(45), "the camera"), "");
+  assert_text(beyond_reach("pan", limits, radians(-200), radians(200), "the camera"), "");
+  assert_text(beyond_reach("tilt", limits, radians(-160), radians(45), "the camera", " (range)"),
+              "tilt-min -170 and tilt-max 45 are beyond what the camera reaches, -160 to 45 (range): set "
+              "tilt-min and "
+              "tilt-max");
+  ck_assert(!beyond_reach("pan", limits, radians(-170), radians(44), "the camera").empty());
+}
+END_TEST
+
 START_TEST(what_is_no_number_moves_nothing) {
   const AxisLimits limits = span(-170, 170);
   assert_reach(limits, kNan, 20, 20, false);
@@ -122,5 +134,6 @@ int main() {
       "head_limits", {what_a_head_can_do_is_accepted, limits_that_exclude_zero_are_refused_and_named,
                       absurd_limits_are_refused_and_named, a_bearing_within_the_stops_is_where_it_is,
                       the_limits_decide_the_way_round, a_bearing_beyond_the_stops_ends_at_the_nearest_one,
-                      no_bearing_leads_beyond_a_stop, what_is_no_number_moves_nothing});
+                      no_bearing_leads_beyond_a_stop, limits_beyond_what_a_head_reaches_are_named,
+                      what_is_no_number_moves_nothing});
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The option `invert`; head_contract.cpp runs the drivers behind it.
 #include "drivers/head/inverted_head.h"
+#include "drivers/head/reach.h"
 
 #include <optional>
 #include <utility>
@@ -137,6 +138,27 @@ START_TEST(the_axes_are_named_or_both) {
 }
 END_TEST
 
+// The range is the camera's own: -30 is 30 where it hangs upside down.
+START_TEST(limits_are_compared_with_the_range_of_the_camera_as_it_hangs) {
+  Limits limits = uneven();
+  limits.tilt.from = cerberus::sensing::radians(-80), limits.tilt.to = cerberus::sensing::radians(20);
+  const auto beyond = [&](const char* options) {
+    return beyond_reach("onvif", option_words(options), limits);
+  };
+  assert_text(beyond("range=-170,170,-90,90"), "");
+  assert_text(beyond("range=-170,170,-30,90 invert"), "");
+  assert_text(beyond("invert=tilt range=-170,170,-30,90"), "");
+  for (const char* options : {"range=-170,170,-30,90", "range=-170,170,-30,90 invert=pan"})
+    assert_text(beyond(options),
+                "tilt-min -80 and tilt-max 20 are beyond what the camera reaches, -30 to 90 (range): set "
+                "tilt-min and tilt-max");
+  ck_assert(beyond("range=-100,170,-90,90").starts_with("pan-min"));
+  for (const char* options : {"range=-170,170,x,-30,90", "range=-170,170,-30", "range=90,-90,-30,30", ""})
+    assert_text(beyond(options), "");
+  assert_text(beyond_reach("visca", option_words("range=-1,1,-1,1"), limits), "");
+}
+END_TEST
+
 int main() {
   Suite* suite = suite_create("inverted_head");
   TCase* tests = tcase_create("inverted_head");
@@ -144,6 +166,7 @@ int main() {
   tcase_add_loop_test(tests, reports_of_an_inverted_axis_are_negated_too, 0, 4);
   tcase_add_test(tests, what_has_no_direction_goes_through);
   tcase_add_test(tests, the_axes_are_named_or_both);
+  tcase_add_test(tests, limits_are_compared_with_the_range_of_the_camera_as_it_hangs);
   suite_add_tcase(suite, tests);
   SRunner* runner = srunner_create(suite);
   srunner_run_all(runner, CK_ENV);

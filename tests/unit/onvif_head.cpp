@@ -404,6 +404,19 @@ START_TEST(a_camera_that_refuses_moves_for_another_reason_keeps_its_timeout) {
 }
 END_TEST
 
+START_TEST(limits_beyond_the_range_are_refused) {
+  Rig rig({}, [](OnvifOptions& options) {
+    options.mechanics.least = onvif::Angles{-170, -30};
+    options.mechanics.most = onvif::Angles{170, 90};
+  });
+  const std::string fault = rig.served.line("fault");
+  ck_assert_msg(
+      fault.find("tilt-min -45 and tilt-max 45 are beyond what the ONVIF camera at ") != std::string::npos &&
+          fault.ends_with("reaches, -30 to 90 (range): set tilt-min and tilt-max"),
+      "%s", fault.c_str());
+}
+END_TEST
+
 START_TEST(a_range_is_used_or_said_not_to_be) {
   const struct {
     const char* why;  // nothing: it is used
@@ -655,6 +668,7 @@ int main() {
        a_head_with_false_positions_goes_where_it_is_sent_and_not_beyond_its_limits,
        a_camera_that_refuses_a_timeout_by_any_fault_is_driven_without,
        a_camera_that_refuses_moves_for_another_reason_keeps_its_timeout,
+       limits_beyond_the_range_are_refused,
        a_range_is_used_or_said_not_to_be,
        a_profile_without_a_ptz_configuration_is_used_where_it_or_its_node_is_named,
        a_camera_without_positions_finds_its_reference_by_a_preset,

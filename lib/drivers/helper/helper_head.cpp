@@ -12,13 +12,13 @@
 #include <mutex>
 #include <vector>
 
+#include "drivers/head/reach.h"
 #include "drivers/helper/helper_client.h"
 #include "drivers/helper/helper_process.h"
 #include "drivers/helper/helper_watch.h"
 #include "drivers/helper/option_words.h"
 #include "drivers/helper/passwords.h"
 #include "drivers/helper/program_check.h"
-#include "drivers/servo/servo_options.h"
 #include "text/numbers.h"
 
 namespace cerberus::drivers {
@@ -59,17 +59,6 @@ std::string settings_fault(const std::string& driver, const HeadSetup& setup) {
   if (setup.helper_timeout < std::chrono::milliseconds(1) || setup.helper_timeout > std::chrono::seconds(10))
     return "helper-timeout must be 1 ms to 10 s, and is " +
            text::significant(motion::seconds(setup.helper_timeout), 6).string() + " s";
-  return {};
-}
-
-// What of the limits the servos do not reach. Options that cannot be read are the helper's to refuse.
-std::string beyond_reach(const HeadSetup& setup) {
-  for (const OptionWord& word : option_words(setup.options)) {
-    ServoAxisOptions axis;
-    if ((word.key != "pan" && word.key != "tilt") || !parse_servo_axis(word.value, axis).empty()) continue;
-    const motion::AxisLimits& limits = word.key == "pan" ? setup.limits.pan : setup.limits.tilt;
-    if (std::string wrong = axis.beyond_reach(word.key, limits); !wrong.empty()) return wrong;
-  }
   return {};
 }
 
@@ -266,7 +255,7 @@ std::string HelperHead::check(const HeadSetup& setup) const {
   words.insert(words.begin() + 1, "--check");
   const std::string said = first_line_of(words);
   if (said.starts_with(kFault)) return said.substr(kFault.size()) + " (device-options)";
-  return driver_ == "servo-pwm" ? beyond_reach(setup) : "";
+  return beyond_reach(driver_, option_words(setup.options), setup.limits);
 }
 
 std::string HelperHead::open(const HeadSetup& setup) {

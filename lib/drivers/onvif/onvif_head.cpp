@@ -25,8 +25,21 @@ OnvifHead::OnvifHead(std::unique_ptr<onvif::HttpClient> http, OnvifOptions optio
       zoom_lock_(options_.login.zoom),
       homing_(options_.home_time) {}
 
+// A camera that stands at the end of its range is no fault of its reports.
+std::string OnvifHead::beyond_range() const {
+  const onvif::Mechanics& mechanics = options_.mechanics;
+  if (!mechanics.least || !mechanics.most) return {};
+  const auto axis = [&](const char* name, const motion::AxisLimits& limits, double least, double most) {
+    return motion::beyond_reach(name, limits, sensing::radians(least), sensing::radians(most), camera_name(),
+                                " (range)");
+  };
+  std::string wrong = axis("pan", limits_.pan, mechanics.least->pan, mechanics.most->pan);
+  return wrong.empty() ? axis("tilt", limits_.tilt, mechanics.least->tilt, mechanics.most->tilt) : wrong;
+}
+
 std::string OnvifHead::open(const HeadSetup& setup, Time now) {
   limits_ = setup.limits;
+  if (const std::string wrong = beyond_range(); !wrong.empty()) return wrong;
   reckoned_.begin(now, {setup.pan, setup.tilt});
   const auto begin = std::chrono::steady_clock::now();
   const auto elapsed = [&] {

@@ -106,6 +106,7 @@ class OnvifHead final : public HeadDevice {
   void on_status(const onvif::SoapAnswer& answer, Time now);
   void on_position(const onvif::Angles& at, Time now);
   void warn_of_unused_range();
+  std::string beyond_range() const;
   void warn_once(bool& warned, const std::string& text);
   void on_zoom(double position, Time now);
   void count_failures(const onvif::SoapAnswer& answer, Time now);

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "drivers/helper/option_words.h"
-#include "text/numbers.h"
 
 namespace cerberus::drivers {
 namespace {
@@ -78,11 +77,9 @@ motion::AxisLimits ServoAxisOptions::reach() const {
 
 std::string ServoAxisOptions::beyond_reach(const std::string& name, const motion::AxisLimits& limits) const {
   const motion::AxisLimits most = reach();
-  if (channel < 0 || (limits.from >= most.from - 1e-9 && limits.to <= most.to + 1e-9)) return {};
-  const auto in_degrees = [](double angle) { return text::significant(sensing::degrees(angle), 6).string(); };
-  return name + "-min " + in_degrees(limits.from) + " and " + name + "-max " + in_degrees(limits.to) +
-         " are beyond what the servo reaches, " + in_degrees(most.from) + " to " + in_degrees(most.to) +
-         " (range and trim): set " + name + "-min and " + name + "-max";
+  return channel < 0
+             ? ""
+             : motion::beyond_reach(name, limits, most.from, most.to, "the servo", " (range and trim)");
 }
 
 std::string parse_servo_axis(std::string_view text, ServoAxisOptions& axis) {

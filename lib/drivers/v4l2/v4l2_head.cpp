@@ -20,10 +20,6 @@ using Kind = AxisCommand::Kind;
 constexpr double kTie = 1e-6;                  // of a step: rounding of the division
 constexpr double kSecond = radians(1) / 3600;  // of arc
 
-std::string in_degrees(double angle) {
-  return text::significant(degrees(angle), 6).string();
-}
-
 // The nearest value that the control takes. Step 0 counts as 1.
 std::int32_t on_grid(double value, const ControlRange& range) {
   const double step = std::max(1, range.step);
@@ -100,12 +96,8 @@ std::string V4l2Head::check() const {
 
 std::string V4l2Head::check_range(const Axis& axis) const {
   if (mode_ != Mode::absolute || !axis.angles) return {};
-  const double from = axis.angles->least * kSecond, to = axis.angles->most * kSecond;
-  if (axis.limits.from >= from - 1e-6 && axis.limits.to <= to + 1e-6) return {};
-  const std::string name = axis.name;
-  return name + "-min " + in_degrees(axis.limits.from) + " and " + name + "-max " +
-         in_degrees(axis.limits.to) + " are beyond what the camera " + options_.device + " reaches, " +
-         in_degrees(from) + " to " + in_degrees(to) + ": set " + name + "-min and " + name + "-max";
+  return motion::beyond_reach(axis.name, axis.limits, axis.angles->least * kSecond,
+                              axis.angles->most * kSecond, "the camera " + options_.device);
 }
 
 std::string V4l2Head::connect(Time now) {
