@@ -210,6 +210,28 @@ START_TEST(a_gradual_change_of_appearance_keeps_the_identity) {
 }
 END_TEST
 
+// A person walks out of the picture of a head that stands, and one comes in there two seconds later. A coat that is a quarter
+// of a bin lighter passes for the same one where the camera turned away, and not here: others come in by that side, too.
+START_TEST(who_comes_in_where_a_person_walked_out_is_the_same_only_in_the_same_coat) {
+  const Person gone{0, 120, 60, 80};
+  for (const Person& back : {gone, Person{0, 120, 68, 91}, kLight}) {
+    Place place;
+    place.step({}, 2);
+    place.step({}, -2);
+    Person p = gone;
+    for (p.x = 200; p.x < 340; p.x += 4) {
+      place.step({p});
+      if (p.x == 280) ck_assert_uint_eq(place.at(p.x), 1);
+    }
+    for (int k = 0; k < 20; ++k) place.step({});
+    ck_assert_uint_eq(place.tracks.size(), 0);
+    p = back;
+    for (p.x = 330; p.x >= 250; p.x -= 4) place.step({p});
+    ck_assert_uint_eq(place.at(p.x + 4), back.coat == gone.coat ? 1 : 2);
+  }
+}
+END_TEST
+
 // The camera turns away from a person, and another one stands there when it comes back.
 START_TEST(another_appearance_after_off_screen_is_a_new_track) {
   for (const Person& back : {kDark, kLight}) {
@@ -287,5 +309,6 @@ int main() {
        an_occluded_person_who_does_not_reappear_leaves_no_track,
        a_region_of_another_appearance_does_not_take_the_identity,
        a_gradual_change_of_appearance_keeps_the_identity, another_appearance_after_off_screen_is_a_new_track,
+       who_comes_in_where_a_person_walked_out_is_the_same_only_in_the_same_coat,
        three_persons_in_one_blob_for_a_moment_are_three_afterwards, appearance_allocates_nothing});
 }

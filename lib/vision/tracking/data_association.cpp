@@ -97,9 +97,11 @@ double DataAssociation::pair_cost(const TrackHypothesis& t, std::size_t j) const
 // Cost of a difference in appearance; negative: another object.
 double DataAssociation::appearance_cost(const TrackHypothesis& t, std::size_t j) const {
   const Parameters& q = parameters_;
-  if (!t.has_appearance()) return 0;
+  if (!t.has_appearance()) return t.walked_out() && appearances_->of(j).known() ? -1 : 0;
   const bool returns = turn_of(t) == Turn::off_screen;
   const double difference = appearance_distance(t.appearance.model, appearances_->of(j));
+  // Others come in at the same side meanwhile: of one that walked out nothing may differ.
+  if (t.walked_out() && (difference < 0 || difference > q.usual_change)) return -1;
   if (difference > (returns ? q.off_screen_change : t.appearance.change + q.sudden_change)) return -1;
   const double known = returns ? 0 : 1 - std::exp(-t.appearance.learnt / q.known_time);
   return (q.appearance_cost + known * q.known_cost) * std::max(0.0, difference - q.usual_change);

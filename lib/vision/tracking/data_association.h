@@ -34,7 +34,9 @@ class DataAssociation {
 
     // Appearance distance. measured on vtest.avi: the same person again .16 in the median and .28 in one of ten; two
     // persons .36 in the median.
-    double usual_change = 0.15;    // costs nothing
+    // Costs nothing; and the most of a track that walked out of a head's picture. swept: docs/quality.md, .1 to .25. Guard:
+    // unit coats.
+    double usual_change = 0.15;
     double appearance_cost = 3.0;  // per unit beyond it,
     // and known_cost more of a model that was learnt for long, approached with known_time, for tracks in view: what was seen
     // for a second may be one side of a person. swept: docs/quality.md, 0 to 8 and 3 to 8 s. Guard: bench-variants, unit

@@ -38,12 +38,20 @@ void LifeCycle::leave(TrackHypothesis& t, const CameraOrientation& camera) {
   t.life = OffScreen{direction, camera.magnification(direction), true, stopped, 0};
 }
 
+// However slow the part at the picture's edge was, the object is outside by now.
 void LifeCycle::walk_out(TrackHypothesis& t, const CameraOrientation& camera) {
+  const Box part = t.box();
+  const double end = camera.lens.frame().width, margin = t.parameters->border * t.size();
+  const bool left = part.x < margin, right = part.right() > end - margin;
   leave(t, camera);
-  OffScreen& data = std::get<OffScreen>(t.life);
-  data.walked_out = true;
-  data.stopped = false;
+  if (left && !right) t.x.position = std::min(t.x.position, -t.width() / 2);
+  if (right && !left) t.x.position = std::max(t.x.position, end + t.width() / 2);
   t.x.velocity = t.y.velocity = 0;
+  OffScreen& data = std::get<OffScreen>(t.life);
+  data.direction = camera.direction({t.x.position, t.y.position});
+  data.magnification = camera.magnification(data.direction);
+  data.stopped = false;
+  data.walked_out = true;
 }
 
 // The extent before was a guess where the picture's edge had cut it, and may have been a group's.
