@@ -59,4 +59,15 @@ double ZoomTable::field_of_view(double position) const {
   return 2 * std::atan(a.tangent * std::pow(b.tangent / a.tangent, share));
 }
 
+double ZoomTable::position_for(double field_of_view) const {
+  if (points_.empty()) return 0;
+  const double tangent = std::tan(field_of_view / 2);
+  if (!(tangent < points_.front().tangent)) return points_.front().position;
+  if (tangent <= points_.back().tangent) return points_.back().position;
+  const auto below = std::ranges::find_if(points_, [&](const Point& p) { return p.tangent < tangent; });
+  const Point &a = *(below - 1), &b = *below;
+  return a.position +
+         (b.position - a.position) * std::log(tangent / a.tangent) / std::log(b.tangent / a.tangent);
+}
+
 }  // namespace cerberus::motion

@@ -22,6 +22,9 @@ class ZoomTable {
   bool empty() const { return points_.empty(); }
   // Radians, over the frame's width; beyond the table the nearest end's. 0: the table is empty.
   double field_of_view(double position) const;
+  // The position at which the camera sees this (radians): field_of_view()'s inverse; beyond the table the nearest end. 0:
+  // the table is empty.
+  double position_for(double field_of_view) const;
 
  private:
   struct Point {

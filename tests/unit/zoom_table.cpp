@@ -46,6 +46,21 @@ START_TEST(beyond_the_table_its_ends_hold) {
 }
 END_TEST
 
+START_TEST(a_field_of_view_has_the_position_at_which_the_camera_sees_it) {
+  const ZoomTable zoom = table("0 90; 0.5 22.5; 1 3.2");
+  const double degree = std::numbers::pi / 180;
+  // By the numbers of the test above: half of the way to .5, and a quarter.
+  ck_assert_double_eq_tol(zoom.position_for(48.07335 * degree), .25, 1e-6);
+  ck_assert_double_eq_tol(zoom.position_for(67.47232 * degree), .125, 1e-6);
+  ck_assert_double_eq_tol(zoom.position_for(22.5 * degree), .5, 1e-9);
+  ck_assert_double_eq(zoom.position_for(120 * degree), 0);
+  ck_assert_double_eq(zoom.position_for(1 * degree), 1);
+  for (double position = 0; position <= 1; position += .01)
+    ck_assert_double_eq_tol(zoom.position_for(zoom.field_of_view(position)), position, 1e-9);
+  ck_assert_double_eq(ZoomTable().position_for(1), 0);
+}
+END_TEST
+
 START_TEST(what_is_no_table_is_refused_and_changes_nothing) {
   ZoomTable zoom = table("0 60; 1 6");
   for (const char* wrong :
@@ -62,7 +77,9 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "zoom_table", {at_its_points_the_table_is_what_was_written,
-                     between_two_points_the_focal_length_grows_by_equal_factors,
-                     beyond_the_table_its_ends_hold, what_is_no_table_is_refused_and_changes_nothing});
+      "zoom_table",
+      {at_its_points_the_table_is_what_was_written,
+       between_two_points_the_focal_length_grows_by_equal_factors, beyond_the_table_its_ends_hold,
+       a_field_of_view_has_the_position_at_which_the_camera_sees_it,
+       what_is_no_table_is_refused_and_changes_nothing});
 }
