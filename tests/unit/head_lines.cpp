@@ -55,11 +55,13 @@ START_TEST(numbers_that_are_none_hold) {
 END_TEST
 
 START_TEST(ready_lists_abilities_and_skips_those_of_later_versions) {
-  const HeadAbilities all = parsed<ReadyLine>("ready 1 position velocity feedback rate 20 zoom").abilities;
-  ck_assert(all.position && all.velocity && all.feedback);
+  const HeadAbilities all =
+      parsed<ReadyLine>("ready 1 position velocity feedback zoom rate 20 iris").abilities;
+  ck_assert(all.position && all.velocity && all.feedback && all.zoom);
+  assert_text(ready_line(all), "ready 1 position velocity feedback zoom rate 20");
   ck_assert_double_eq(all.rate, 20);
   const HeadAbilities one = parsed<ReadyLine>("ready 1 velocity").abilities;
-  ck_assert(!one.position && one.velocity && !one.feedback);
+  ck_assert(!one.position && one.velocity && !one.feedback && !one.zoom);
 }
 END_TEST
 
@@ -76,8 +78,10 @@ END_TEST
 START_TEST(a_zoom_is_0_to_2) {
   ck_assert_double_eq(parsed<ZoomLine>("zoom 0.25").position, .25);
   assert_text(zoom_line({.position = .25}), "zoom 0.25");
+  const auto order = parse_pipeline_line("zoom 0.25");
+  ck_assert(order && std::get<ZoomLine>(*order).position == .25);
   for (const char* wrong : {"zoom", "zoom -0.1", "zoom 2.1", "zoom nan", "zoom 0.5 1"})
-    ck_assert_msg(!parse_helper_line(wrong), "%s", wrong);
+    ck_assert_msg(!parse_helper_line(wrong) && !parse_pipeline_line(wrong), "%s", wrong);
 }
 END_TEST
 

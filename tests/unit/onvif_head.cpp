@@ -548,6 +548,30 @@ START_TEST(a_locked_zoom_is_set_at_the_start_and_again_while_the_head_stands) {
 }
 END_TEST
 
+START_TEST(a_zoom_that_is_ordered_is_set_while_the_head_stands_and_dropped_while_it_turns) {
+  OnvifFaults faults;
+  faults.zooms = true;
+  faults.widest = 1;
+  faults.longest = 21;
+  Rig rig(faults, [](OnvifOptions&) {});
+  ck_assert(rig.served.line("ready").find(" zoom ") != std::string::npos);
+  ck_assert(rig.served.until([&] { return rig.camera.zoom() == .25; }, "zoom 0.25"));
+  assert_text(rig.served.line("zoom 0.25"), "zoom 0.25");
+  ck_assert(rig.served.until([&] { return rig.camera.speed() > 9; }, "move at 10 hold"));
+  rig.served.say("zoom 0.5");
+  for (int k = 0; k < 100; ++k) {
+    rig.served.say("move at 10 hold");
+    rig.served.run(10ms);
+  }
+  rig.served.say("move hold hold");
+  for (int k = 0; k < 200; ++k) {
+    rig.served.say("alive");
+    rig.served.run(10ms);
+  }
+  ck_assert_double_eq(rig.camera.zoom(), .25);
+}
+END_TEST
+
 START_TEST(a_zoom_of_another_range_is_a_share_of_it) {
   OnvifFaults faults;
   faults.zooms = true;
@@ -675,6 +699,7 @@ int main() {
        a_preset_that_is_not_there_is_a_fault,
        a_preset_that_is_not_listed_is_named_with_those_that_are,
        a_locked_zoom_is_set_at_the_start_and_again_while_the_head_stands,
+       a_zoom_that_is_ordered_is_set_while_the_head_stands_and_dropped_while_it_turns,
        a_zoom_of_another_range_is_a_share_of_it,
        a_zoom_that_cannot_be_kept_any_more_is_a_warning_and_the_head_turns,
        a_zoom_that_cannot_be_kept_is_an_error,

@@ -404,6 +404,27 @@ START_TEST(a_locked_zoom_is_set_and_kept) {
 }
 END_TEST
 
+START_TEST(a_zoom_that_is_ordered_is_set_at_once) {
+  Bench bench;
+  bench.camera = with_angles();
+  assert_text(bench.open(), "");
+  ck_assert(!bench.head->abilities().zoom);
+  bench.camera.ranges[id::kZoomAbsolute] = {100, 500, 10};
+  bench.camera.values[id::kZoomAbsolute] = 100;
+  assert_text(bench.open(), "");
+  ck_assert(bench.head->abilities().zoom);
+  bench.head->zoom(.5, 0s);
+  ck_assert_int_eq(bench.camera.values[id::kZoomAbsolute], 300);
+  bench.run(600ms);
+  ck_assert_double_eq(bench.head->take_zoom().value_or(-1), .5);
+  bench.head->zoom(1.5, 0s);  // the control has no digital zoom
+  ck_assert_int_eq(bench.camera.values[id::kZoomAbsolute], 500);
+  bench.options.zoom = .5;
+  assert_text(bench.open(), "");
+  ck_assert(!bench.head->abilities().zoom);  // it is locked
+}
+END_TEST
+
 START_TEST(the_zoom_is_read_twice_a_second) {
   Bench bench;
   bench.camera = with_angles();
@@ -468,6 +489,6 @@ int main() {
        an_axis_that_ceases_to_report_makes_no_pose,
        a_camera_that_never_reports_one_of_its_axes_has_no_feedback,
        a_speed_whose_minimum_is_wrong_is_not_used, relative_moves_add_up, the_zoom_is_a_share_of_its_range,
-       a_locked_zoom_is_set_and_kept, the_zoom_is_read_twice_a_second, what_cannot_be_is_named,
-       a_camera_that_goes_away_is_reported_and_used_again});
+       a_locked_zoom_is_set_and_kept, a_zoom_that_is_ordered_is_set_at_once, the_zoom_is_read_twice_a_second,
+       what_cannot_be_is_named, a_camera_that_goes_away_is_reported_and_used_again});
 }

@@ -108,7 +108,7 @@ constexpr ViscaCamera::Line kLines[] = {ViscaCamera::Line::serial, ViscaCamera::
 START_TEST(a_camera_turns_reports_and_stops_on_every_line) {
   ViscaCamera camera(kLines[_i]);
   Served served(options_for(camera));
-  assert_text(served.line("ready"), "ready 1 velocity feedback alive rate 20");
+  assert_text(served.line("ready"), "ready 1 velocity feedback alive zoom rate 20");
   served.say("move at 45 hold");
   ck_assert(served.until([&] { return camera.pan() > 5; }));
   ck_assert_double_eq(camera.speed(), 45);
@@ -125,7 +125,7 @@ START_TEST(a_camera_that_is_slow_to_answer_at_first_is_one_with_positions) {
   faults.acknowledges = false;
   ViscaCamera camera(ViscaCamera::Line::tcp, faults);
   Served served(options_for(camera));
-  assert_text(served.line("ready"), "ready 1 velocity feedback alive rate 20");
+  assert_text(served.line("ready"), "ready 1 velocity feedback alive zoom rate 20");
 }
 END_TEST
 
@@ -208,7 +208,7 @@ START_TEST(a_camera_without_the_header_of_visca_over_ip_is_understood) {
   faults.header = false;
   ViscaCamera camera(ViscaCamera::Line::udp, faults);
   Served served(options_for(camera, false));
-  assert_text(served.line("ready"), "ready 1 velocity feedback alive rate 20");
+  assert_text(served.line("ready"), "ready 1 velocity feedback alive zoom rate 20");
   served.say("move at 25 hold");
   ck_assert(served.until([&] { return camera.speed() == 25; }));
 }
@@ -459,6 +459,36 @@ START_TEST(a_zoom_that_is_not_reported_at_first_is_asked_for_again) {
 }
 END_TEST
 
+START_TEST(a_zoom_that_is_ordered_is_set_while_the_camera_turns) {
+  for (const bool acknowledges : {true, false}) {
+    ViscaCamera camera(ViscaCamera::Line::udp, {.acknowledges = acknowledges, .zooms = true});
+    Served served(options_for(camera));
+    ck_assert(served.until([&] { return camera.speed() == 45; }, "move at 45 hold"));
+    served.say("zoom 0.25");
+    ck_assert(served.until([&] { return camera.zoom() == 0x1000; }));
+    ck_assert_double_eq(camera.speed(), 45);
+    ck_assert(served.until([&] { return camera.speed() == 19; }, "move at 20 hold"));
+  }
+}
+END_TEST
+
+// A stop takes back an order of the zoom that was not sent yet.
+START_TEST(after_a_stop_no_zoom_follows) {
+  ViscaPlant plant({.zooms = true}, true);
+  SteppedHelper served(plant);
+  plant.camera.swallow_stops(1000);
+  served.say("stop");
+  served.say("zoom 0.5");  // waits for the answer to the stop
+  served.say("stop");
+  plant.camera.swallow_stops(0);
+  for (int k = 0; k < 300; ++k) {
+    served.say("alive");
+    served.run(10ms);
+  }
+  ck_assert_int_eq(plant.camera.zoom(), 0);
+}
+END_TEST
+
 START_TEST(a_zoom_beyond_the_lens_is_refused) {
   const ViscaCamera camera(ViscaCamera::Line::udp);
   ViscaOptions options = options_for(camera);
@@ -496,12 +526,13 @@ START_TEST(a_camera_is_driven_at_its_address_on_a_serial_line_and_no_other_is) {
   ViscaOptions options = options_for(camera);
   {
     Served first(options);
-    assert_text(first.line("ready"), "ready 1 velocity home alive rate 20");  // address 1 answers nothing
+    assert_text(first.line("ready"),
+                "ready 1 velocity home alive zoom rate 20");  // address 1 answers nothing
     first.say("move at 45 hold");
   }
   options.address = 2;
   Served second(options);
-  assert_text(second.line("ready"), "ready 1 velocity feedback alive rate 20");
+  assert_text(second.line("ready"), "ready 1 velocity feedback alive zoom rate 20");
   ck_assert_double_eq(camera.pan(), 0);
   ck_assert(second.until([&] { return camera.speed() == 45; }, "move at 45 hold"));
   ck_assert(second.until([&] { return camera.speed() == 0; }, "stop"));
@@ -598,6 +629,8 @@ int main() {
         the_position_of_the_zoom_is_reported,
         a_locked_zoom_is_set_at_the_begin,
         a_zoom_that_is_not_reported_at_first_is_asked_for_again,
+        a_zoom_that_is_ordered_is_set_while_the_camera_turns,
+        after_a_stop_no_zoom_follows,
         a_zoom_beyond_the_lens_is_refused,
         a_camera_without_a_zoom_turns_and_stops_all_the_same,
         a_camera_is_driven_at_its_address_on_a_serial_line_and_no_other_is,

@@ -35,6 +35,9 @@ class EmergencyStop final : public HeadDevice {
   bool emergency() const override { return open_; }
   std::optional<SpeedsLine> take_speeds(Time now) override { return device_.take_speeds(now); }
   std::optional<double> take_zoom() override { return device_.take_zoom(); }
+  void zoom(double position, Time now) override {
+    if (!open_) device_.zoom(position, now);
+  }
   void home(Time now) override {
     if (!open_) device_.home(now);
   }

@@ -29,6 +29,7 @@ struct HeadSetup {
   motion::SpeedMap pan_speeds, tilt_speeds;  // of a calibration: what the head makes of commanded speeds
   motion::ZoomTable zoom_table{};            // what a real head sees at the positions of its zoom
   std::optional<double> lock_zoom{};         // the position at which a real head's zoom is kept
+  bool moves_zoom = false;                   // commands have a zoom: a head without one is refused
   std::string script;                        // of scripted_head.h
   std::string command;                       // of the driver external: the helper, run by /bin/sh
   std::string helper;                        // the program that drives real heads
@@ -43,6 +44,8 @@ struct HeadCommand {
   // Both axes hold, and the device also ends what it does without a command, as homing. A plain hold does not end that.
   bool stop = false;
   unsigned order = 0;  // number of the order by hand that it is, which a failure names; 0: none
+  // The position that the zoom goes to (motion/zoom_table.h); nothing: it is left as it is.
+  std::optional<double> zoom{};
 };
 
 class Head {

@@ -39,6 +39,7 @@ class InvertedHead final : public HeadDevice {
   bool emergency() const override { return device_.emergency(); }
   std::optional<SpeedsLine> take_speeds(Time now) override;
   std::optional<double> take_zoom() override { return device_.take_zoom(); }
+  void zoom(double position, Time now) override { device_.zoom(position, now); }
   void home(Time now) override { device_.home(now); }
   std::optional<HomedLine> take_homed(Time now) override;
   std::string fault() const override { return device_.fault(); }

@@ -48,6 +48,8 @@ class HeadDevice {
   virtual std::optional<SpeedsLine> take_speeds(Time) { return std::nullopt; }
   // The position of the zoom (head_lines.h) since the last call, if it was read anew.
   virtual std::optional<double> take_zoom() { return std::nullopt; }
+  // Goes to a position of the zoom (abilities().zoom). One that was not sent yet is dropped by a stop.
+  virtual void zoom(double, Time) {}
   // Begins to look for the reference (abilities().home); any other command ends it.
   virtual void home(Time) {}
   // Once: the reference was found, and the device stands there.

@@ -81,6 +81,7 @@ std::optional<HelperLine> parse_ready(Words words) {
     if (word == "feedback") ready.abilities.feedback = true;
     if (word == "home") ready.abilities.home = true;
     if (word == kAlive) ready.abilities.alive = true;
+    if (word == "zoom") ready.abilities.zoom = true;
     if (word != "rate") continue;
     const std::optional<double> rate = words.number();
     if (!rate || *rate < 1 || *rate > 1000) return std::nullopt;
@@ -110,7 +111,7 @@ std::optional<HelperLine> parse_homed(Words words) {
   return HomedLine{{radians(*pan), radians(*tilt)}};
 }
 
-std::optional<HelperLine> parse_zoom(Words words) {
+std::optional<ZoomLine> parse_zoom(Words& words) {
   const auto position = words.number();
   if (!position || *position < 0 || *position > motion::kMostZoom || !words.next().empty())
     return std::nullopt;
@@ -172,6 +173,7 @@ std::string ready_line(const HeadAbilities& abilities) {
   if (abilities.feedback) line += " feedback";
   if (abilities.home) line += " home";
   if (abilities.alive) line.append(" ").append(kAlive);
+  if (abilities.zoom) line += " zoom";
   line += " rate";
   append(line, abilities.rate);
   return line;
@@ -218,6 +220,8 @@ std::optional<PipelineLine> parse_pipeline_line(std::string_view text) {
       line = LimitsLine{*limits};
   } else if (word == "home") {
     line = HomeLine{};
+  } else if (word == "zoom") {
+    if (const auto zoom = parse_zoom(words)) line = *zoom;
   } else if (word == kAlive) {
     line = AliveLine{};
   } else if (word == "stop") {

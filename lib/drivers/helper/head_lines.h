@@ -9,9 +9,10 @@
 //     move PAN-COMMAND TILT-COMMAND     a command is `hold`, `to POSITION SPEED` or `at SPEED`
 //     limits PAN-MIN PAN-MAX TILT-MIN TILT-MAX
 //     home                              looks for the reference
+//     zoom POSITION                     of a helper with that ability: goes there
 //     alive | stop | quit
 //   helper -> pipeline
-//     ready 1 [position] [velocity] [feedback] [home] [alive] [rate N]
+//     ready 1 [position] [velocity] [feedback] [home] [alive] [zoom] [rate N]
 //     alive                             of a helper with that ability: the answer to `alive`
 //     pose PAN TILT PAN-SPEED TILT-SPEED AGE
 //     speeds PAN TILT AGE               of a head without feedback: what its steps make of the last `move`
@@ -42,6 +43,7 @@ struct HeadAbilities {
   double rate = 50;       // commands a second that it takes, 1 to 1000
   bool home = false;      // it finds a reference: `home`
   bool alive = false;     // it answers each `alive` within 500 ms
+  bool zoom = false;      // it goes to a position of its zoom, and reports where that is
 };
 
 struct ReadyLine {
@@ -56,7 +58,7 @@ struct SpeedsLine {
   double age = 0;         // seconds since they were commanded; more than kMostAge counts as that
   static constexpr double kMostAge = 1;
 };
-struct ZoomLine {
+struct ZoomLine {       // in both directions: where it is, and where it is to go
   double position = 0;  // 0 to motion::kMostZoom
 };
 struct HomedLine {
@@ -90,7 +92,8 @@ struct HomeLine {};
 struct StopLine {};
 struct QuitLine {};
 // What a pipeline sends.
-using PipelineLine = std::variant<HelloLine, MoveLine, LimitsLine, HomeLine, AliveLine, StopLine, QuitLine>;
+using PipelineLine =
+    std::variant<HelloLine, MoveLine, LimitsLine, HomeLine, ZoomLine, AliveLine, StopLine, QuitLine>;
 
 std::string hello_line(const HeadSetup& setup, Time timeout);
 std::string move_line(const motion::AxisCommand& pan, const motion::AxisCommand& tilt);
@@ -101,7 +104,7 @@ std::string ready_line(const HeadAbilities& abilities);
 std::string pose_line(const PoseLine& pose);
 std::string speeds_line(const SpeedsLine& speeds);
 std::string homed_line(const HomedLine& homed);
-std::string zoom_line(const ZoomLine& zoom);
+std::string zoom_line(const ZoomLine& zoom);         // in both directions
 inline constexpr std::string_view kAlive = "alive";  // in both directions
 
 // One line without its line feed. Nothing: it is no line of this protocol, a number is not finite, its limits are not

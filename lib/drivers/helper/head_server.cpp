@@ -43,6 +43,8 @@ void HeadServer::obey(const std::string& text, Time now) {
     move(limits_.tilt, limits->limits.tilt);
     device_.limit(limits_, now);
     obeyed_ = true;  // a head beyond them returns
+  } else if (const auto* zoom = std::get_if<ZoomLine>(&*line)) {
+    device_.zoom(zoom->position, now);
   } else if (std::get_if<AliveLine>(&*line)) {
     send_(std::string(kAlive));
   } else if (std::get_if<StopLine>(&*line)) {

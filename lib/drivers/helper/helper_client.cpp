@@ -108,6 +108,12 @@ void HelperClient::stand(Time now) {
   last_move_.clear();
 }
 
+// Only to a zoom of which it is known where it is. Once: what becomes of it is reported.
+void HelperClient::send_zoom() {
+  const auto zoom = std::exchange(last_.zoom, std::nullopt);
+  if (zoom && abilities_.zoom && zoom_ && !last_.stop && !pressed_) send_(zoom_line({*zoom}) + '\n');
+}
+
 // The protocol's stop, which ends homing, too.
 void HelperClient::send_stop() {
   follows_ = false;
@@ -336,6 +342,7 @@ std::string HelperClient::execute(Time now) {
     send_stop();
   else
     send_command(now);
+  send_zoom();
   return std::exchange(notice_, {});
 }
 

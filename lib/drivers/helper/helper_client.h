@@ -56,6 +56,7 @@ class HelperClient {
   // Once after the reports have parted from the commands.
   bool parted() { return std::exchange(parted_untold_, false); }
   bool ready() const { return ready_; }
+  bool moves_zoom() const { return abilities_.zoom; }
   const std::string& fault() const { return fault_; }
   // As Head::fault(): also while a new helper is not ready.
   std::string fault_at_rest();
@@ -80,6 +81,7 @@ class HelperClient {
   std::string why_idle() const;  // why no command is sent; empty: they are
   void send_command(Time now);
   void send_stop();
+  void send_zoom();
   void stand(Time now);
   void follow(Time now);
   void check_homing(Time now);

@@ -65,7 +65,8 @@ HeadAbilities OnvifHead::abilities() const {
           .velocity = true,
           .feedback = positions_,
           .rate = kParameters.rate,
-          .home = !positions_ && (options_.home || !camera_.preset.empty())};
+          .home = !positions_ && (options_.home || !camera_.preset.empty()),
+          .zoom = camera_.options.zoom && options_.login.zoom < 0};
 }
 
 // Small cameras let a move end later than asked, or only at their own steps of a second.
@@ -99,9 +100,23 @@ void OnvifHead::limit(const motion::Limits& limits, Time now) {
 
 void OnvifHead::stop(Time now) noexcept {
   pan_ = tilt_ = {};
+  zoom_order_.reset();
   homing_.end();
   stops_while_moving_ = 0;
   begin_stop(now);
+}
+
+void OnvifHead::zoom(double position, Time now) {
+  zoom_order_ = std::min(position, 1.0);
+  zoom_ordered_ = now;
+}
+
+// A camera may take any AbsoluteMove as the end of the move before: the zoom waits until the head stands, and not for long.
+void OnvifHead::send_zoom(Time now) {
+  if (!zoom_order_ || !online_ || login_.busy() || moved_ || stopping_ || homing_.busy()) return;
+  const double position = *std::exchange(zoom_order_, std::nullopt);
+  if (camera_.options.zoom && now - zoom_ordered_ < kParameters.zoom_fresh)
+    send(zoom_request(camera_, position), now);
 }
 
 // Degrees a second, of the move that is sent now. Its Timeout ends it.
@@ -274,6 +289,7 @@ Time OnvifHead::tick(Time now) {
   if (online_ && !stopping_ && now >= move_refused_until_) fault_.clear();
   send_stops(now);
   send_move(now);
+  send_zoom(now);
   send_inquiry(now);
   return now + (stopping_ || move_ != 0 ? std::chrono::milliseconds(10) : std::chrono::milliseconds(25));
 }

@@ -64,8 +64,10 @@ struct OnvifParameters {
   Time after_refusal = std::chrono::seconds(30);  // cameras lock a user out after some wrong logins
   Time after_fault = std::chrono::seconds(5);     // then a refused move is tried again
   Time fresh = std::chrono::milliseconds(1000);   // an older position is none; derived: five inquiries
-  double rate = 10;           // commands a second; derived: 0.1 s a request on a slow camera
-  double least_change = 0.1;  // degrees a second: a smaller change is not sent
+  Time zoom_fresh =
+      std::chrono::milliseconds(500);  // an older order of the zoom is dropped. derived: two are due since
+  double rate = 10;                    // commands a second; derived: 0.1 s a request on a slow camera
+  double least_change = 0.1;           // degrees a second: a smaller change is not sent
 };
 inline constexpr OnvifParameters kOnvifParameters{};
 
@@ -87,6 +89,7 @@ class OnvifHead final : public HeadDevice {
   Time tick(Time now) override;
   std::optional<PoseLine> take_pose(Time now) override;
   std::optional<double> take_zoom() override { return std::exchange(zoom_, std::nullopt); }
+  void zoom(double position, Time now) override;
   std::string fault() const override { return fault_; }
 
  private:
@@ -109,6 +112,7 @@ class OnvifHead final : public HeadDevice {
   std::string beyond_range() const;
   void warn_once(bool& warned, const std::string& text);
   void on_zoom(double position, Time now);
+  void send_zoom(Time now);
   void count_failures(const onvif::SoapAnswer& answer, Time now);
   void refuse(const onvif::Fault& fault, Time now);
   void lose(const std::string& why, Time now);
@@ -163,6 +167,8 @@ class OnvifHead final : public HeadDevice {
   int stops_while_moving_ = 0;
   SpeedReckoning reckoned_;  // for a camera without positions
   onvif::ZoomLock zoom_lock_;
+  std::optional<double> zoom_order_;  // not sent yet
+  Time zoom_ordered_{};
   onvif::Homing homing_;
   std::optional<PoseLine> pose_;
   std::optional<onvif::Angles> position_;  // last measured

@@ -185,7 +185,11 @@ std::string V4l2Head::open(const HeadSetup& setup, Time now) {
 
 HeadAbilities V4l2Head::abilities() const {
   const bool speed = mode_ == Mode::speed;
-  return {.position = !speed, .velocity = true, .feedback = reads_, .rate = 20};
+  return {.position = !speed,
+          .velocity = true,
+          .feedback = reads_,
+          .rate = 20,
+          .zoom = zooms_.has_value() && options_.zoom < 0};
 }
 
 bool V4l2Head::read_position(Axis& axis) noexcept {
@@ -309,6 +313,15 @@ void V4l2Head::send_angle(Axis& axis, double angle) {
   check(error);
 }
 
+std::int32_t V4l2Head::zoom_value(double position) const {
+  return on_grid(
+      zooms_->least + std::min(position, 1.0) * (static_cast<double>(zooms_->most) - zooms_->least), *zooms_);
+}
+
+void V4l2Head::zoom(double position, Time) {
+  if (zooms_ && !lost_) controls_->set(camera_control::kZoomAbsolute, zoom_value(position));
+}
+
 // Reads the zoom, and sets it where it is to be kept. What is reported is what was read: a camera may refuse a zoom, or
 // take seconds to reach it, and turns all the same.
 void V4l2Head::check_zoom(Time now) {
@@ -318,7 +331,7 @@ void V4l2Head::check_zoom(Time now) {
   std::int32_t value = 0;
   if (controls_->get(camera_control::kZoomAbsolute, value) != 0) return;
   if (options_.zoom >= 0) {
-    const std::int32_t wanted = on_grid(zooms_->least + options_.zoom * range, *zooms_);
+    const std::int32_t wanted = zoom_value(options_.zoom);
     const bool set = value != wanted && controls_->set(camera_control::kZoomAbsolute, wanted) == 0;
     if (set && controls_->get(camera_control::kZoomAbsolute, value) != 0) return;
   }

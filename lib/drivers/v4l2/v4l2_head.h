@@ -55,6 +55,7 @@ class V4l2Head final : public HeadDevice {
   std::optional<PoseLine> take_pose(Time now) override;
   std::optional<SpeedsLine> take_speeds(Time now) override;
   std::optional<double> take_zoom() override { return std::exchange(zoom_, std::nullopt); }
+  void zoom(double position, Time now) override;
   std::string fault() const override { return fault_; }
   V4l2Options::Mode mode() const { return mode_; }  // the one in use, once it is open
 
@@ -105,6 +106,7 @@ class V4l2Head final : public HeadDevice {
   bool read_position(Axis& axis) noexcept;
   void lose(int error);
   void check_zoom(Time now);
+  std::int32_t zoom_value(double position) const;
   void probe(Time now);
   void check(int error) {
     if (error != 0) lose(error);

@@ -66,7 +66,8 @@ void ViscaHead::on_connected(Time now) {
   }
   stop(now);  // it stands until the next move
   zoom_unanswered_ = 0;
-  zoom_due_ = options_.zoom >= 0;
+  zoom_order_.reset();
+  if (options_.zoom >= 0) zoom_order_ = options_.zoom;
 }
 
 std::string ViscaHead::check() const {
@@ -110,7 +111,12 @@ std::string ViscaHead::check_answers() const {
 }
 
 HeadAbilities ViscaHead::abilities() const {
-  return {.position = false, .velocity = true, .feedback = reports_, .rate = kRate, .home = !reports_};
+  return {.position = false,
+          .velocity = true,
+          .feedback = reports_,
+          .rate = kRate,
+          .home = !reports_,
+          .zoom = options_.feedback && options_.zoom < 0};
 }
 
 void ViscaHead::send(const visca::Message& message) {
@@ -148,6 +154,7 @@ void ViscaHead::limit(const motion::Limits& limits, Time now) {
 void ViscaHead::stop(Time now) noexcept {
   pan_ = tilt_ = sent_pan_ = sent_tilt_ = 0;
   homing_.reset();
+  if (options_.zoom < 0) zoom_order_.reset();
   stopping_ = moved_ = true;
   stops_ = 1;
   send_order(Order::stop, visca::stop(options_.address), now);
@@ -199,17 +206,26 @@ void ViscaHead::send_drive(Time now) {
   set_speeds(allowed, now);
 }
 
+void ViscaHead::zoom(double position, Time) {
+  zoom_order_ = position;
+}
+
+// An answer without a number must not be taken as a stop's. One order of the zoom at a time, so that moves wait for few.
 void ViscaHead::send_zoom(Time now) {
+  if (!zoom_order_ || stopping_ || !stream_.is_open()) return;
+  if (std::ranges::find(unanswered_orders_, Order::zoom, &Sent::order) != unanswered_orders_.end()) return;
   zoom_sent_ = now;
-  zoom_due_ = false;
-  send_order(Order::zoom, visca::zoom(options_.address, options_.zoom), now);
+  const double position = *std::exchange(zoom_order_, std::nullopt);
+  send_order(Order::zoom, visca::zoom(options_.address, position), now);
 }
 
 void ViscaHead::on_zoom(double position, Time now) {
   zoom_ = position;
   zoom_unanswered_ = 0;
   if (options_.zoom < 0 || stopping_ || now - zoom_sent_ < kZoomPatience) return;
-  if (std::abs(position - options_.zoom) > kZoomSlack) send_zoom(now);
+  if (std::abs(position - options_.zoom) <= kZoomSlack) return;
+  zoom_order_ = options_.zoom;
+  send_zoom(now);
 }
 
 // While no order waits for its answer: a camera without a zoom refuses, and the refusal must not count for an order.
@@ -345,8 +361,7 @@ Time ViscaHead::tick(Time now) {
     send(visca::position_inquiry(options_.address));
     if (reports_ && !unanswered_) unanswered_ = now;
   }
-  // An answer without a number must not be taken as the stop's.
-  if (zoom_due_ && !stopping_) send_zoom(now);
+  send_zoom(now);
   ask_zoom(now);
   ask_version(now);
   return now + (stopping_ || pan_ != sent_pan_ || tilt_ != sent_tilt_ ? Time(std::chrono::milliseconds(10))

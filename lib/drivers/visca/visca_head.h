@@ -58,6 +58,7 @@ class ViscaHead final : public StreamDevice {
   Time tick(Time now) override;
   std::optional<PoseLine> take_pose(Time now) override;
   std::optional<double> take_zoom() override { return std::exchange(zoom_, std::nullopt); }
+  void zoom(double position, Time now) override;
 
   static constexpr std::chrono::milliseconds kAnswerTime{
       200};  // VISCA: an answer within 16 ms; slow firmwares need more
@@ -138,7 +139,8 @@ class ViscaHead final : public StreamDevice {
   Time version_asked_{};
   int versions_asked_ = 0;
   bool tells_version_ = false;  // it has answered such an inquiry
-  bool zoom_due_ = false;       // it is set when the stop at the start was answered
+  std::optional<double>
+      zoom_order_;  // not sent yet: a locked zoom waits until the stop at the start was answered
 };
 
 }  // namespace cerberus::drivers
