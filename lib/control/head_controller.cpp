@@ -57,6 +57,7 @@ void HeadController::open(std::unique_ptr<drivers::HeadRunner> runner, const dri
   dead_time_.reset();
   base_yaw_.reset();
   taken_.reset();
+  zoom_.begin(setup.zoom_table);
   watchdog_.rest();
   manual_ = {};
   faulty_ = silent_ = ended_ = homing_ = sees_turns_ = false;
@@ -92,6 +93,7 @@ void HeadController::set_options(const control::LawOptions& law, const fusion::F
                                  Time watchdog) {
   const std::lock_guard guard(lock_);
   law_.set_options(law);
+  zoom_.set_on(law.keep_size);
   confine_law();
   selector_.set_options(fuser);
   timeout_ = watchdog;
@@ -359,6 +361,8 @@ HeadCommand HeadController::decide(const Frame& frame, Time now, DeferredNotific
   const Command axes = law_.update(selection.goal, frame.lens, moment);
   command.pan = axes.pan;
   command.tilt = axes.tilt;
+  command.zoom = zoom_.on_frame(moment.times.taken, selection.goal, frame.seen->tracks, frame.picture,
+                                history_.at(frame.repeats.value_or(frame.running) + epoch_).field_of_view);
   if (!faulty_) report(state_of(axes), selection.reason, now, out);
   return command;
 }

@@ -17,6 +17,7 @@
 #include "control/deferred_notifications.h"
 #include "control/following/base_yaw.h"
 #include "control/following/dead_time.h"
+#include "control/following/zoom_control.h"
 #include "control/law.h"
 #include "control/manual_override.h"
 #include "control/pose_correction.h"
@@ -61,6 +62,7 @@ class HeadController {
     Time length{};                    // duration until the next one, if known
     Time now{};                       // clock-driven: running time by the clock
     vision::Lens lens;
+    vision::Size picture{};               // for keep-size; empty: not known
     std::optional<motion::Pose> capture;  // the head's pose at that time, if the frame carries it
     std::optional<PictureMotion> motion;  // since the frame before, where it was measured
     std::optional<Time> repeats;          // the frame repeats the picture that was taken at this running time
@@ -137,6 +139,7 @@ class HeadController {
   DeadTime dead_time_;           // of the same
   BaseYaw base_yaw_;             // below the head
   std::optional<Time> taken_;    // the frame before, in the head's time
+  ZoomControl zoom_;
   Watchdog watchdog_;
   TargetSelector selector_;
   ManualOverride manual_;

@@ -277,6 +277,31 @@ START_TEST(moved_stops_lead_no_head_further_out) {
 }
 END_TEST
 
+// 60 and 15 degrees: the middle has sqrt(tan 30 tan 7.5) = .275699 for half its view, 15.4135 degrees to each side.
+START_TEST(a_zoom_crosses_its_range_in_three_seconds_and_the_head_turns_meanwhile) {
+  HeadSetup with = setup();
+  with.latency = 100ms;
+  const auto seen = [](const Pose& pose) { return cerberus::sensing::degrees(pose.field_of_view); };
+  ck_assert_double_eq(seen(Opened(with).at(0s)), 0);  // without a table it has none
+  ck_assert(with.zoom_table.parse("0 60; 1 15").empty());
+  Opened head(with);
+  ck_assert_double_eq_tol(seen(head.at(0s)), 60, 1e-9);
+  const AxisCommand turn{Kind::velocity, .5, 0};
+  HeadCommand zoom{1s, turn, {}};
+  zoom.zoom = 1;
+  ck_assert(head.head.command(zoom).empty());
+  ck_assert_double_eq_tol(seen(head.at(1100ms)), 60, 1e-9);
+  ck_assert_double_eq_tol(seen(head.at(2600ms)), 30.8270, 1e-3);
+  ck_assert(head.at(2600ms).until <= 2640ms);  // a pose of a moving zoom does not hold for long
+  ck_assert_double_eq_tol(seen(head.at(4200ms)), 15, 1e-9);
+  head.send(2500ms, turn);  // the same again: the zoom goes on
+  ck_assert_double_eq_tol(head.at(3s).pan.speed, .5, 1e-9);
+  ck_assert_double_eq_tol(seen(head.at(4200ms)), 15, 1e-9);
+  head.send(3s, {});
+  ck_assert_double_eq_tol(seen(head.at(4200ms)), 15, 1e-9);
+}
+END_TEST
+
 START_TEST(steady_state_allocates_nothing) {
   Opened head(setup());
   const std::size_t before = cerberus::tests::allocations();
@@ -296,5 +321,7 @@ int main() {
        new_limits_count_after_the_latency, a_stop_that_is_too_near_to_brake_for_is_not_passed,
        moved_stops_lead_no_head_further_out, the_camera_follows_the_motor_with_play,
        pieces_meet_and_make_the_whole_way, equal_seeds_give_equal_noise_and_others_other,
-       numbers_that_are_none_do_not_make_a_head, steady_state_allocates_nothing});
+       numbers_that_are_none_do_not_make_a_head,
+       a_zoom_crosses_its_range_in_three_seconds_and_the_head_turns_meanwhile,
+       steady_state_allocates_nothing});
 }

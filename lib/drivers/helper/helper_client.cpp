@@ -40,6 +40,7 @@ constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 std::string HelperClient::open(const HeadSetup& setup) {
   HeadSetup rigid = setup;  // play would hide from the head the turn that takes it up
   rigid.backlash = 0;
+  rigid.zoom_table = {};  // the head reports its own
   reckoning_.set_play(setup.play);
   if (std::string wrong = model_.open(rigid); !wrong.empty()) return wrong;
   setup_ = setup;

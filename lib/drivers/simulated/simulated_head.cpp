@@ -20,6 +20,9 @@ using motion::kNever;
 using motion::Plan;
 
 constexpr motion::Time kMostLatency = std::chrono::seconds(5);  // see kKept
+constexpr double kZoomSpeed = 1. / 3;                           // of its range, a second
+// While the zoom moves, a pose holds for so long.
+constexpr motion::Time kZoomPiece = std::chrono::milliseconds(40);
 
 // The hash function of splitmix64 (Steele, Lea, Flood, OOPSLA 2014).
 std::uint64_t scramble(std::uint64_t x) {
@@ -118,7 +121,7 @@ SimulatedHead::Leg SimulatedHead::follow(const Leg& leg, Time from, const AxisCo
 std::string SimulatedHead::obey(const HeadCommand& command) {
   commanded_ = command.time;
   const Chapter& last = nth_last(0);
-  if (command.pan == last.command.pan && command.tilt == last.command.tilt)
+  if (command.pan == last.command.pan && command.tilt == last.command.tilt && !command.zoom)
     return {};  // the command is already being executed
   HeadCommand next = command;
   next.time = std::max(next.time, placed_);
@@ -175,7 +178,9 @@ std::string SimulatedHead::begin(const HeadCommand& command) {
   Time end;
   const Chapter& before = chapter_at(from, end);
   Chapter next{from, follow(before.pan, from, command.pan, setup_.limits.pan),
-               follow(before.tilt, from, command.tilt, setup_.limits.tilt), command};
+               follow(before.tilt, from, command.tilt, setup_.limits.tilt), command, before.zoom};
+  if (command.zoom) next.zoom = {from, before.zoom.at(from), *command.zoom};
+  next.command.zoom.reset();  // it is not given again with the rest
   if (before.from == from) {  // of two commands of one time the later one counts
     nth_last(0) = next;
     return {};
@@ -207,6 +212,18 @@ AxisState SimulatedHead::camera(const Leg& leg, Time time, Time& until) const {
   return {position, 0, 0};
 }
 
+double SimulatedHead::Zoom::at(Time time) const {
+  const double most = time > from ? kZoomSpeed * motion::seconds(time - from) : 0;
+  return begin + std::clamp(end - begin, -most, most);
+}
+
+void SimulatedHead::look_through(const Zoom& zoom, Time time, motion::Pose& pose) const {
+  if (setup_.zoom_table.empty()) return;
+  const double position = zoom.at(time);
+  pose.field_of_view = setup_.zoom_table.field_of_view(position);
+  if (position != zoom.end) pose.until = std::min(pose.until, time + kZoomPiece);
+}
+
 // Gaussian by Box and Muller, a new value every millisecond.
 double SimulatedHead::noise(Time time, unsigned axis) const {
   if (setup_.noise == 0) return 0;
@@ -226,6 +243,7 @@ std::string SimulatedHead::state(Time time, motion::Pose& pose) {
   pose.tilt = camera(chapter.tilt, time, tilt_end);
   pose.until = std::min({end, pan_end, tilt_end});
   pose.settled = pose.until == kNever && !pose.moving();
+  look_through(chapter.zoom, time, pose);
   pose.measured = setup_.noise > 0;
   if (pose.measured) {
     pose.pan.position = noisy(pose.pan.position, noise(time, 0), setup_.limits.pan);

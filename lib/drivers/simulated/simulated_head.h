@@ -6,6 +6,8 @@
 //   command at t -> from t + latency on the motors follow motion::Plan -> the camera follows the motor with play:
 //   while the motor turns to the right, camera = max(camera, motor - backlash / 2),
 //   to the left min(camera, motor + backlash / 2)
+//
+// With a table of a zoom it has one: at the start the widest, and three seconds from end to end.
 #pragma once
 
 #include <array>
@@ -36,10 +38,17 @@ class SimulatedHead final : public Head {
     motion::Plan plan;
     double camera = 0;
   };
+  // The zoom from a time on: towards `end`.
+  struct Zoom {
+    Time from{};
+    double begin = 0, end = 0;
+    double at(Time time) const;
+  };
   struct Chapter {
     Time from{};
     Leg pan, tilt;
     HeadCommand command;
+    Zoom zoom{};
   };
   // Largest number of commands that have not taken effect: 5 s of latency at 50 a second.
   static constexpr unsigned kKept = 256;
@@ -50,6 +59,7 @@ class SimulatedHead final : public Head {
   std::string begin(const HeadCommand& command);
   Leg follow(const Leg& leg, Time from, const motion::AxisCommand& command,
              const motion::AxisLimits& limits) const;
+  void look_through(const Zoom& zoom, Time time, motion::Pose& pose) const;
   motion::AxisState camera(const Leg& leg, Time time, Time& until) const;
   double noise(Time time, unsigned axis) const;
 
