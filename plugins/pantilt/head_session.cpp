@@ -97,6 +97,11 @@ std::unique_ptr<drivers::Head> prepare(const HeadSettings& s, drivers::HeadSetup
     wrong = setup.zoom_table.parse(s.zoom_table);
     if (!wrong.empty()) wrong += " (zoom-table)";
   }
+  if (wrong.empty() && s.keep_size && s.lock_zoom >= 0)
+    wrong = "lock-zoom keeps the zoom that keep-size moves: set one of them";
+  if (wrong.empty() && s.keep_size && setup.zoom_table.empty())
+    wrong =
+        "keep-size needs a zoom-table: no protocol says what the camera sees at the positions of its zoom";
   auto head = drivers::make_head(s.driver);
   if (wrong.empty() && !head)
     wrong.append("There is no head driver \"").append(s.driver).append("\": take one of ") +=

@@ -64,6 +64,9 @@ const Property<HeadSettings> kProperties[] = {
              "IIO gyro on the body that carries the head, by name or id, and which of its axes points up, as "
              "'mpu6050 axis=-y' (z): its yaw rate is sent upstream as the base's")
         .read_at_start(),
+    property("keep-size", &HeadSettings::keep_size,
+             "The zoom slowly keeps a followed person at a third of the picture's height: of a visca, onvif, "
+             "v4l2, external or simulated head with a zoom-table"),
     property("helper-timeout", &HeadSettings::helper_timeout,
              "Nanoseconds of silence, 1 ms to 10 s, after which the helper process of a real head stops it")
         .read_at_start(),
@@ -162,7 +165,8 @@ void copy_limits(const HeadSettings& from, HeadSettings& to) {
 control::LawOptions law_options(const HeadSettings& s) {
   return {.limits = head_limits(s),
           .turn_speed = radians(s.turn_speed),
-          .response = static_cast<control::Response>(s.response)};
+          .response = static_cast<control::Response>(s.response),
+          .keep_size = s.keep_size};
 }
 
 fusion::FuserOptions fuser_options(const HeadSettings& s) {
@@ -185,6 +189,7 @@ drivers::HeadSetup head_setup(const HeadSettings& s) {
           .tilt_speeds = {},
           .zoom_table = {},  // parsed when the head is opened
           .lock_zoom = s.lock_zoom >= 0 ? std::optional(s.lock_zoom) : std::nullopt,
+          .moves_zoom = s.keep_size,
           .script = s.script,
           .command = s.command,
           .helper = helper_program(),

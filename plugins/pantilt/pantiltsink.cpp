@@ -28,7 +28,10 @@
  *
  * A head that reports its zoom (`visca`, `onvif`, `v4l2`, `external`) sees what `zoom-table` says, which counts in place
  * of `horizontal-fov` and is part of its poses (`field-of-view`); `lock-zoom` keeps the zoom instead. With neither a
- * warning says that every angle depends on it.
+ * warning says that every angle depends on it. With `keep-size` the zoom of such a head (also of a `simulated` one, which
+ * has a zoom where it has a table) slowly keeps a followed person at a third of the picture's height: twice as near within
+ * six seconds, only while the person is seen, no nearer while it is off the middle, and never by an order by hand, during
+ * an emergency stop or after the watchdog's stop.
  *
  * The newest frame counts: one whose running time is not newer than the last one's is dropped. A single time stamp more
  * than 10 s ahead is taken for a mistake, unless the clock of a live pipeline has reached it: the frame counts as if it
@@ -274,6 +277,7 @@ GstFlowReturn on_frame(Private& self, GstBuffer* buffer, GstClockTime pts, GstCl
       .now = session.now().value_or(*taken),
       .lens = vision::Lens(session.controller.field_of_view(*taken, radians(session.field_of_view)),
                            {info.width, info.height}),
+      .picture = {info.width, info.height},
       .capture = std::nullopt,
       .motion = std::nullopt,
       .repeats = std::nullopt};

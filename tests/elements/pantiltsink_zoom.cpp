@@ -77,6 +77,12 @@ GST_START_TEST(what_cannot_be_is_an_error) {
       {"driver=pelco-d device=serial:/dev/null lock-zoom=0",
        "the driver pelco-d keeps no zoom: lock-zoom is for"},
       {"driver=visca device=udp:127.0.0.1:9 lock-zoom=2", "is kept at 0 to 1.92 (lock-zoom), not at 2"},
+      {"driver=pelco-d device=serial:/dev/null keep-size=true zoom-table=\"0 60; 1 6\"",
+       "the driver pelco-d moves no zoom: keep-size is for visca"},
+      {"keep-size=true", "keep-size needs a zoom-table"},
+      {"driver=visca device=udp:127.0.0.1:9 lock-zoom=0 keep-size=true zoom-table=\"0 60; 1 6\"",
+       "lock-zoom keeps the zoom that keep-size moves: set one of them"},
+      {head_at("0") + " keep-size=true zoom-table=\"0 60; 1 6\"", "has no zoom to move (keep-size)"},
       {"driver=pelco-d device=serial:/dev/null device-options=zoom=0.5", "\"zoom\" is no option of pelco-d"}};
   for (const auto& [settings, words] : cases) {
     std::string error = refusal_of(settings);

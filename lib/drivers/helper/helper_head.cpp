@@ -54,6 +54,9 @@ std::string settings_fault(const std::string& driver, const HeadSetup& setup) {
   if (!external && setup.device.empty()) return "the driver " + driver + " needs a device (device=)";
   if (setup.lock_zoom && driver != "visca" && driver != "v4l2" && driver != "onvif")
     return "the driver " + driver + " keeps no zoom: lock-zoom is for visca, v4l2 and onvif";
+  if (setup.moves_zoom && !external && driver != "visca" && driver != "v4l2" && driver != "onvif")
+    return "the driver " + driver +
+           " moves no zoom: keep-size is for visca, v4l2, onvif, external and simulated";
   for (const std::string& setting : {setup.device, setup.options})
     if (std::string wrong = refuse_password(setting); !wrong.empty()) return wrong;
   if (setup.helper_timeout < std::chrono::milliseconds(1) || setup.helper_timeout > std::chrono::seconds(10))
@@ -273,7 +276,11 @@ std::string HelperHead::open(const HeadSetup& setup) {
   const auto over = [&] { return core->client.ready() || !core->client.fault().empty(); };
   core->answered.wait(guard, over);  // the thread gives up one that does not become ready
   core->open = core->client.ready();
-  const std::string fault = core->client.fault();
+  std::string fault = core->client.fault();
+  if (core->open && setup.moves_zoom && !core->client.moves_zoom()) {
+    core->open = false;
+    fault = "its helper `" + core->name + "` has no zoom to move (keep-size)";
+  }
   guard.unlock();
   if (core->open) return {};
   leave(kParameters.refused_patience);

@@ -80,6 +80,7 @@ constexpr Option kHead[] = {
     {"latency", K::seconds, 0, 5},
     {"zoom-table", K::text},
     {"lock-zoom", K::number, -1, 2},
+    {"keep-size", K::truth},
     {"base-gyro", K::text},
     {"watchdog-timeout", K::seconds, 0.05, 60},
     {"manual-timeout", K::seconds, 0, kDay},
