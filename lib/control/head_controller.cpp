@@ -2,6 +2,7 @@
 #include "control/head_controller.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace cerberus::control {
@@ -18,6 +19,7 @@ constexpr motion::Time kWhileMoving = milliseconds(20), kAtRest = milliseconds(2
 // The driver is queried every 20 ms; without an answer for this time it is at fault.
 constexpr motion::Time kSilence = std::chrono::seconds(1);
 constexpr char kOrderEnded[] = "the manual command ended: the head was at fault";
+constexpr char kGoesRound[] = "goes round to meet the track on the other side";
 constexpr char kSilent[] = "the head does not answer";
 // A decision between frames is used if its time is at most kEarly after and at most kStale before now.
 constexpr motion::Time kEarly = milliseconds(100), kStale = std::chrono::seconds(1);
@@ -342,8 +344,12 @@ Moment HeadController::moment_of(const Frame& frame, Time now) {
   base_yaw_.on_frame(taken, reported, picture_turn(frame),
                      {capture.pan.position, reckoned, motion::seconds(setup_.latency)});
   const Time effect = effect_of(now);
-  return {
+  Moment moment{
       capture, history_.at(effect), {motion::seconds(taken), motion::seconds(effect)}, base_yaw_.at(effect)};
+  if (frame.picture.width > 0 && frame.lens.known())
+    moment.view = 2 * std::atan(frame.picture.width / 2. / frame.lens.focal_length());
+  moment.dead_time = motion::seconds(effect - now);
+  return moment;
 }
 
 HeadCommand HeadController::decide(const Frame& frame, Time now, DeferredNotifications& out) {
@@ -363,7 +369,7 @@ HeadCommand HeadController::decide(const Frame& frame, Time now, DeferredNotific
   command.tilt = axes.tilt;
   command.zoom = zoom_.on_frame(moment.times.taken, selection.goal, frame.seen->tracks, frame.picture,
                                 history_.at(frame.repeats.value_or(frame.running) + epoch_).field_of_view);
-  if (!faulty_) report(state_of(axes), selection.reason, now, out);
+  if (!faulty_) report(state_of(axes), axes.round ? kGoesRound : selection.reason, now, out);
   return command;
 }
 
@@ -441,8 +447,10 @@ void HeadController::on_decision(const FusionDecision& decision, Time at, Deferr
   const Time effect = effect_of(now);
   const Pose ahead = history_.at(effect);
   const double then = motion::seconds(effect);
-  const Command command = law_.update(selection->goal, {}, {ahead, ahead, {then, then}, {}});
-  if (!faulty_) report(state_of(command), selection->reason, now, out);
+  Moment moment{ahead, ahead, {then, then}, {}};
+  moment.dead_time = motion::seconds(effect - now);
+  const Command command = law_.update(selection->goal, {}, moment);
+  if (!faulty_) report(state_of(command), command.round ? kGoesRound : selection->reason, now, out);
   order({now, command.pan, command.tilt});
 }
 

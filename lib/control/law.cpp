@@ -11,10 +11,6 @@ namespace {
 
 // A position within this distance counts as reached.
 constexpr double kThere = sensing::radians(0.05);
-// A target beyond a stop is watched from that stop until it is this far beyond it. Only then does the head turn all the
-// way round, if the target is reachable from the other side: the turn takes seconds, and a target near the edge would
-// cause it repeatedly.
-constexpr double kGoRound = sensing::radians(10);
 
 double positive(double value, double otherwise) {
   return value > 0 && std::isfinite(value) ? value : otherwise;
@@ -40,6 +36,7 @@ void Law::reset() {
   pan_.reset();
   tilt_.reset();
   left_.reset();
+  way_round_.end();
   sweeping_right_ = false;
 }
 
@@ -54,15 +51,18 @@ Command Law::track(vision::Point target, const vision::Lens& lens, const Moment&
   command.state = State::tracking;
   const motion::AxisLimits &limits = options_.limits.pan, &tilt_limits = options_.limits.tilt;
   const double straight = capture.pan.position + sensing::wrap(seen.bearing - capture.pan.position);
+  if (way_round_.active() && !way_round_.leaves_behind(straight, limits)) {  // met on the other side
+    way_round_.end();
+    pan_.reset();
+    pan_.begin();
+  }
   FollowedAxis::Aim pan = pan_.observe(straight, moment.base, moment.times, parameters);
   FollowedAxis::Aim tilt = tilt_.observe(seen.elevation, {}, moment.times, parameters);
   left_ = pan.position + pan.rate * moment.times.horizon();
   if (!limits.holds(pan.position)) {
-    const double stop = limits.clamp(pan.position);
-    const motion::Reach round = reach(pan.position, stop, limits);
-    const bool worth = !round.limited && std::abs(pan.position - stop) > kGoRound;
-    pan.move_to(worth ? round.position : stop);
-    command.limited = !worth;
+    if (goes_round(pan, moment)) return *go_on_round(moment);
+    pan.move_to(limits.clamp(pan.position));
+    command.limited = true;
   }
   if (!tilt_limits.holds(tilt.position)) {
     const double stop = tilt_limits.clamp(tilt.position);
@@ -71,6 +71,27 @@ Command Law::track(vision::Point target, const vision::Lens& lens, const Moment&
   }
   command.pan = pan_.command(pan, ahead.pan, limits, moment.times, parameters);
   command.tilt = tilt_.command(tilt, ahead.tilt, tilt_limits, moment.times, parameters);
+  return command;
+}
+
+bool Law::goes_round(const FollowedAxis::Aim& pan, const Moment& moment) {
+  return way_round_.decide({.target = pan.position,
+                            .rate = pan.rate,
+                            .head = moment.ahead.pan.position,
+                            .view = moment.view,
+                            .effect = moment.times.effect,
+                            .dead_time = moment.dead_time},
+                           options_.limits.pan);
+}
+
+// Nothing: the head does not go round, or it did and met no target.
+std::optional<Command> Law::go_on_round(const Moment& moment) {
+  const auto pan = way_round_.command(moment.times.effect, moment.ahead.pan.position, options_.limits.pan);
+  if (!pan) return std::nullopt;
+  Command command;
+  command.pan = *pan;
+  command.state = State::turning;
+  command.round = true;
   return command;
 }
 
@@ -125,6 +146,8 @@ Command Law::update(const Goal& goal, const vision::Lens& lens, const Moment& mo
       tilt_.begin();
     }
     command = track(*goal.target, lens, moment);
+  } else if (const auto round = go_on_round(moment)) {
+    command = *round;
   } else if (goal.action == Action::turn_left || goal.action == Action::turn_right) {
     command = turn(goal.action == Action::turn_right ? 1 : -1, ahead);
   } else if (goal.action == Action::search) {

@@ -3,13 +3,15 @@
 //
 // A target is followed in the world's frame, predicted to the time at which the command takes effect
 // (followed_axis.h). Turns towards a known direction are made at the head's own full speed; what is searched and the way
-// back to zero at the turn speed. A search begins where the last target left.
+// back to zero at the turn speed. A search begins where the last target left. A target that crosses behind a head with
+// stops is met on the other side where that is sooner (way_round.h).
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
 #include "control/following/followed_axis.h"
+#include "control/following/way_round.h"
 #include "fusion/rules.h"
 #include "motion/pose.h"
 #include "sensing/sectors.h"
@@ -42,6 +44,7 @@ struct Command {
   motion::AxisCommand pan, tilt;
   State state = State::holding;
   bool limited = false;  // the goal lies beyond a stop; the head goes to the nearest position
+  bool round = false;    // it goes all the way round, to a target that is out of the picture meanwhile
 };
 
 // The head at the two times that a command connects.
@@ -50,6 +53,8 @@ struct Moment {
   motion::Pose ahead;         // when the command takes effect
   FollowedAxis::Times times;  // these times
   BaseTurn base;
+  double view = 0;       // what the camera sees over the picture's width, radians; 0: not known
+  double dead_time = 0;  // the head's, seconds
 };
 
 class Law {
@@ -65,6 +70,8 @@ class Law {
 
  private:
   Command track(vision::Point target, const vision::Lens& lens, const Moment& moment);
+  bool goes_round(const FollowedAxis::Aim& pan, const Moment& moment);
+  std::optional<Command> go_on_round(const Moment& moment);
   Command turn(double direction, const motion::Pose& ahead) const;
   Command search(const sensing::Interval& sector, const motion::Pose& ahead);
   Command zero() const;
@@ -72,6 +79,7 @@ class Law {
   LawOptions options_;
   fusion::Action last_ = fusion::Action::hold;
   FollowedAxis pan_, tilt_;
+  WayRound way_round_;
   std::optional<double> left_;  // pan angle at which the last target left
   std::uint32_t track_ = 0;
   bool sweeping_right_ = false;

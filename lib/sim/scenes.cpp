@@ -21,6 +21,12 @@ std::function<double(double)> walker(double distance, double speed, double accel
   return [=](double t) { return std::atan2(line.at(t + begin) - half, distance); };
 }
 
+// On an arc of that radius, to and fro between straight ahead and `angle`.
+std::function<double(double)> arc_walker(double radius, double angle, double speed, double acceleration) {
+  const Shuttle arc(radius * angle, speed, acceleration);
+  return [=](double t) { return arc.at(t) / radius; };
+}
+
 std::function<double(double)> standing(double bearing) {
   return [=](double) { return bearing; };
 }
@@ -41,6 +47,7 @@ Scene scene(const std::string& name, unsigned seed) {
   if (name == "far") made.person = walker(8, 1.4, 1.5, phase);
   if (name == "run") made.person = walker(4, 4, 3, phase);
   if (name == "wander") made.wander = .3;
+  if (name == "behind") made.person = arc_walker(distance, radians(250), 1.4, 1.5);
   if (name == "step") {
     made.person = standing(radians(100));
     made.sector = true;

@@ -6,6 +6,7 @@
 //   run      4 m/s, 4 m away, turns round at 3 m/s2
 //   rest     stands within 20 degrees of straight ahead   wander    the same; its box wanders (CameraTraits::wander)
 //   step     stands 100 degrees to the right: out of the picture at first, and a sensor's sector says search
+//   behind   walks at 1.4 m/s on an arc 3 to 8 m away, to and fro between 0 and 250 degrees: each way it crosses behind
 //   gyro     stands; the base turns 90 degrees to and fro at 45 a second, rests 2 s, and its turn is reported
 //   nogyro   the same, and nothing is reported            picture   reported as the picture shows it
 #pragma once
@@ -15,8 +16,8 @@
 
 namespace cerberus::sim {
 
-inline constexpr const char* kScenes[] = {"mix",    "near", "far",  "run",    "rest",
-                                          "wander", "step", "gyro", "nogyro", "picture"};
+inline constexpr const char* kScenes[] = {"mix",  "near",   "far",  "run",    "rest",   "wander",
+                                          "step", "behind", "gyro", "nogyro", "picture"};
 
 enum class BaseReport { turn, none, from_picture };
 

@@ -99,6 +99,7 @@ void ProjectLaw::on_picture(const Seen& seen, Time now) {
   frame.length = frame_length_;
   frame.now = now;
   frame.lens = lens_;
+  frame.picture = kPicture;
   const auto moved = vision::Transform::translation(-picture.turn / pixel_turn_, 0);
   frame.motion = control::PictureMotion{moved, 1, kPicture, seen.base_turn, seen.base_reported};
   act([&](auto& out) { controller_.frame(frame, out); });
