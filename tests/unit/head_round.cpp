@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A person who crosses behind a head of +-170 degrees, 90 a second: the controller before a simulated head, in its own time.
+// The lens has 60 degrees; the person is seen within 29 of its middle.
+#include "control/head_controller.h"
+
+#include <check.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "support/suite.h"
+
+using namespace cerberus;
+using namespace cerberus::control;
+using namespace std::chrono_literals;
+using drivers::HeadRunner;
+using fusion::Action;
+using motion::Pose;
+using motion::Time;
+using sensing::degrees;
+using sensing::radians;
+
+namespace {
+
+constexpr vision::Size kPicture{640, 360};
+constexpr char kRound[] = "goes round to meet the track on the other side";
+using Bearing = std::function<double(double)>;  // degrees at a time, seconds
+
+struct Rig {
+  NotificationQueue queue;
+  std::atomic<const char*> name = "head";
+  DeferredNotifications out{queue, name};
+  HeadController controller;
+  Time now{};
+  motion::PoseHistory history;
+  Status status;
+  double lost = 0;  // seconds out of the picture
+  vision::Lens lens{radians(60), kPicture};
+
+  Rig() {
+    drivers::HeadSetup setup;
+    setup.pan = radians(100);
+    auto runner = std::make_unique<HeadRunner>(drivers::make_head("simulated"), nullptr);
+    runner->open(setup, 10s);
+    controller.open(std::move(runner), setup);
+    controller.set_clock_driven(true);
+    controller.set_options({}, {}, 500ms);
+    controller.resume(now, out);
+    tick();
+  }
+  double head() const { return degrees(history.at(now).pan.position); }
+  void tick() {
+    controller.tick(now, out);
+    out.send([&](const char*, const Pose& pose) { history.add(pose); },
+             [&](const char*, const Notice& notice) {
+               if (const auto* said = std::get_if<Status>(&notice)) status = *said;
+             });
+  }
+  // missing: what fusion decides while the person is out of the picture.
+  void run(double until, const Bearing& bearing, Action missing = Action::hold) {
+    for (; motion::seconds(now) < until; now += 20ms) {
+      tick();
+      if (now % 40ms != 0ms) continue;
+      const double off = sensing::wrap(radians(bearing(motion::seconds(now)) - head()));
+      const bool seen = std::abs(off) < radians(29);
+      lost += seen ? 0 : .04;
+      const fusion::Track track{.id = 4,
+                                .x = 300 + lens.focal_length() * std::tan(seen ? off : 0),
+                                .y = 130,
+                                .width = 40,
+                                .height = 100,
+                                .age = 2s};
+      FusionDecision decision;
+      decision.made.action = seen ? Action::track : missing;
+      decision.made.rule_name = "test";
+      decision.made.target = seen ? 4 : 0;
+      decision.made.sector = {radians(120), radians(170)};
+      decision.decided = now;
+      HeadController::Frame frame;
+      frame.seen = Observation{std::span(&track, seen ? 1 : 0), decision};
+      frame.running = frame.now = now;
+      frame.length = 40ms;
+      frame.lens = lens;
+      frame.picture = kPicture;
+      controller.frame(frame, out);
+    }
+    tick();
+  }
+};
+
+// 20 degrees a second to the right.
+double crossing(double seconds) {
+  return 100 + 20 * seconds;
+}
+
+}  // namespace
+
+// Out of view at 199 degrees, after 5 s. Then (360 - 58) / 110 s, the way to full speed and dead times: 3.2 s.
+START_TEST(a_person_who_crosses_behind_is_met_on_the_other_side) {
+  for (const Action missing : {Action::hold, Action::search, Action::turn_right, Action::zero}) {
+    Rig rig;
+    rig.run(6, crossing, missing);
+    ck_assert_str_eq(rig.status.reason.c_str(), kRound);
+    ck_assert(rig.status.state == HeadState::turning);
+    rig.run(12, crossing, missing);
+    ck_assert_double_le(rig.lost, 3.4);
+    ck_assert_double_ge(rig.lost, 2.6);
+    ck_assert_double_eq_tol(rig.head(), 340 - 360, 3);  // it follows
+    ck_assert(rig.status.state == HeadState::tracking);
+  }
+}
+END_TEST
+
+START_TEST(a_person_who_turns_back_behind_is_not_left) {
+  Rig rig;
+  rig.run(20, [](double t) { return 190 - std::abs(10 * (t - 9)); });
+  ck_assert_double_eq(rig.lost, 0);
+}
+END_TEST
+
+START_TEST(an_order_by_hand_ends_the_way_round_for_good) {
+  Rig rig;
+  rig.run(6, crossing);
+  ck_assert_str_eq(rig.status.reason.c_str(), kRound);
+  rig.controller.stop(rig.now, rig.out);
+  rig.run(6.5, crossing);
+  const double there = rig.head();
+  rig.run(7, crossing);
+  ck_assert_double_eq_tol(rig.head(), there, 1e-6);
+  rig.controller.automatic(rig.now, rig.out);
+  rig.run(7.5, [](double) { return 90; });
+  ck_assert_double_eq_tol(rig.head(), there, 1e-6);
+}
+END_TEST
+
+START_TEST(without_frames_the_watchdog_stops_the_way_round) {
+  Rig rig;
+  rig.run(5.6, crossing);
+  ck_assert_str_eq(rig.status.reason.c_str(), kRound);
+  for (const Time end = rig.now + 1s; rig.now < end; rig.now += 20ms) rig.tick();
+  const double there = rig.head();
+  for (const Time end = rig.now + 1s; rig.now < end; rig.now += 20ms) rig.tick();
+  ck_assert_double_eq_tol(rig.head(), there, 1e-6);
+  ck_assert(rig.status.state == HeadState::stopped);
+}
+END_TEST
+
+// It goes at 188 degrees, .3 s before the view ends at 24 from the stop: 4.4 s. (146 + 172) / 110 s and 1.5 more.
+START_TEST(a_person_who_is_not_met_is_given_up) {
+  Rig rig;
+  rig.run(5.2, crossing);
+  ck_assert_str_eq(rig.status.reason.c_str(), kRound);
+  const auto gone = [&](double) { return rig.head() + 180; };
+  rig.run(8.5, gone);
+  ck_assert_str_eq(rig.status.reason.c_str(), kRound);
+  rig.run(11, gone);
+  ck_assert(rig.status.state == HeadState::holding);
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "head_round", {a_person_who_crosses_behind_is_met_on_the_other_side,
+                     a_person_who_turns_back_behind_is_not_left, an_order_by_hand_ends_the_way_round_for_good,
+                     without_frames_the_watchdog_stops_the_way_round, a_person_who_is_not_met_is_given_up});
+}
