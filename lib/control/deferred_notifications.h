@@ -51,7 +51,12 @@ struct UnknownZoom {  // the head has a zoom, and what it sees is not known: a w
 struct MissingGyro {  // head and base turn, and nothing measures the base: a warning
   bool operator==(const MissingGyro&) const = default;
 };
-using Notice = std::variant<Status, Refusal, Fault, Lost, UnknownZoom, MissingGyro>;
+// The base is asked to turn, until another one comes, for half a second at most.
+struct BaseTurnRequest {
+  double yaw_rate = 0;  // radians a second, to the right; 0: it is asked no more
+  bool operator==(const BaseTurnRequest&) const = default;
+};
+using Notice = std::variant<Status, Refusal, Fault, Lost, UnknownZoom, MissingGyro, BaseTurnRequest>;
 
 // The notifications of all threads that were not sent yet. Each entry names its head, because the sender may drive
 // another one when it sends.

@@ -25,6 +25,8 @@ constexpr char kSilent[] = "the head does not answer";
 constexpr motion::Time kEarly = milliseconds(100), kStale = std::chrono::seconds(1);
 // A reference that was not found is looked for again after this time. derived: longer than HelperHead looks for it.
 constexpr motion::Time kHomePatience = std::chrono::seconds(60);
+// A request to the base is repeated this often. derived: five times in the half second that it holds
+constexpr motion::Time kAskAgain = milliseconds(100);
 constexpr auto kTickPatience = milliseconds(10);
 // This is long because results must not depend on the load of the machine; a state change interrupts the wait.
 constexpr auto kFramePatience = std::chrono::seconds(10);
@@ -45,6 +47,12 @@ HeadState state_of(const Command& command) {
   return HeadState::holding;
 }
 
+// A track that is only predicted is not.
+bool is_seen(const Observation& frame, std::uint32_t id) {
+  const auto found = std::ranges::find(frame.tracks, id, &fusion::Track::id);
+  return found != frame.tracks.end() && found->state != fusion::TrackState::coasted;
+}
+
 }  // namespace
 
 void HeadController::open(std::unique_ptr<drivers::HeadRunner> runner, const drivers::HeadSetup& setup) {
@@ -60,6 +68,8 @@ void HeadController::open(std::unique_ptr<drivers::HeadRunner> runner, const dri
   base_yaw_.reset();
   taken_.reset();
   zoom_.begin(setup.zoom_table);
+  base_request_.end();
+  base_asked_ = 0;
   watchdog_.rest();
   manual_ = {};
   faulty_ = silent_ = ended_ = homing_ = sees_turns_ = false;
@@ -219,6 +229,7 @@ void HeadController::correct(const Frame& frame, Time now, DeferredNotifications
   homing_ = true;
   law_.reset();
   runner_->home(now);
+  ask_base(0, now, out);
   report(HeadState::homing, "its pose is too uncertain: it looks for its reference", now, out);
 }
 
@@ -265,6 +276,7 @@ void HeadController::watch_emergency(Time head, DeferredNotifications& out) {
   if (!runner_ || runner_->emergency() == (manual_.authority() == Authority::emergency_stop)) return;
   manual_.emergency(manual_.authority() != Authority::emergency_stop);
   law_.reset();
+  ask_base(0, head, out);
   // A command that the head obeys ends its fault.
   if (manual_.authority() == Authority::manual && clock_driven_ && !halted_) order({head, {}, {}});
   report_manual(head, out);
@@ -352,12 +364,22 @@ Moment HeadController::moment_of(const Frame& frame, Time now) {
   return moment;
 }
 
+void HeadController::ask_base(double yaw_rate, Time now, DeferredNotifications& out) {
+  if (yaw_rate == 0) base_request_.end();
+  if (yaw_rate == 0 && base_asked_ == 0) return;
+  if (yaw_rate != 0 && base_asked_ != 0 && now - base_asked_at_ < kAskAgain) return;
+  base_asked_ = yaw_rate;
+  base_asked_at_ = now;
+  out.add(BaseTurnRequest{yaw_rate});
+}
+
 HeadCommand HeadController::decide(const Frame& frame, Time now, DeferredNotifications& out) {
   HeadCommand command{now, {}, {}};
   if (halted_) return command;
   if (manual_.active()) {
     manual_.lapse(now);
     report_manual(now, out);
+    ask_base(0, now, out);
     return manual_at(now);
   }
   const Moment moment = moment_of(frame, now);
@@ -369,6 +391,12 @@ HeadCommand HeadController::decide(const Frame& frame, Time now, DeferredNotific
   command.tilt = axes.tilt;
   command.zoom = zoom_.on_frame(moment.times.taken, selection.goal, frame.seen->tracks, frame.picture,
                                 history_.at(frame.repeats.value_or(frame.running) + epoch_).field_of_view);
+  const LawOptions& options = law_.options();
+  const bool seen = axes.target && !faulty_ && is_seen(*frame.seen, selection.goal.track);
+  ask_base(
+      seen ? base_request_.update(axes.target->pan, axes.target->rate, options.limits.pan, options.base_turn)
+           : 0,
+      now, out);
   if (!faulty_) report(state_of(axes), axes.round ? kGoesRound : selection.reason, now, out);
   return command;
 }
@@ -510,6 +538,7 @@ void HeadController::halt(const char* reason, std::optional<Time> at, drivers::H
   const Time now = earliest(at);
   watchdog_.rest();
   law_.reset();
+  ask_base(0, now, out);
   homing_ = false;
   guard.unlock();
   const Answer answer = runner->stop(now, patience);
@@ -538,6 +567,7 @@ void HeadController::end(std::optional<Time> at, drivers::HeadRunner::Patience p
 // Reports the expiry of the watchdog.
 void HeadController::on_timeout(Time head, DeferredNotifications& out) {
   manual_.expire("the manual command ended: no frame came");
+  ask_base(0, head, out);
   report(HeadState::stopped, "no frame came for " + std::to_string(timeout_ / milliseconds(1)) + " ms", head,
          out);
 }
@@ -567,6 +597,7 @@ std::optional<HeadController::Time> HeadController::newest() const {
 void HeadController::apply_manual(std::optional<Time> at, DeferredNotifications& out) {
   law_.reset();
   const Time now = at && clock_driven_ ? head_time(*at) : latest_;
+  ask_base(0, now, out);
   homing_ = false;
   // A driver that does not answer would take the order whenever it answers again.
   if (silent_ || now - late_since_ > kSilence) manual_.expire(kOrderEnded);

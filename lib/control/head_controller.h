@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "control/deferred_notifications.h"
+#include "control/following/base_request.h"
 #include "control/following/base_yaw.h"
 #include "control/following/dead_time.h"
 #include "control/following/zoom_control.h"
@@ -121,6 +122,8 @@ class HeadController {
   // A manual order that was not repeated in time becomes a stop.
   void end_expired_order(Time now, DeferredNotifications& out);
   drivers::HeadCommand decide(const Frame& frame, Time now, DeferredNotifications& out);
+  // Asks the base to turn; 0 ends that, and is sent once.
+  void ask_base(double yaw_rate, Time now, DeferredNotifications& out);
   void on_timeout(Time head, DeferredNotifications& out);
   void apply_manual(std::optional<Time> now, DeferredNotifications& out);
   void watch_emergency(Time head, DeferredNotifications& out);
@@ -140,6 +143,9 @@ class HeadController {
   BaseYaw base_yaw_;             // below the head
   std::optional<Time> taken_;    // the frame before, in the head's time
   ZoomControl zoom_;
+  BaseRequest base_request_;
+  double base_asked_ = 0;  // radians a second
+  Time base_asked_at_{};   // the head's time
   Watchdog watchdog_;
   TargetSelector selector_;
   ManualOverride manual_;

@@ -51,16 +51,17 @@ Command Law::track(vision::Point target, const vision::Lens& lens, const Moment&
   command.state = State::tracking;
   const motion::AxisLimits &limits = options_.limits.pan, &tilt_limits = options_.limits.tilt;
   const double straight = capture.pan.position + sensing::wrap(seen.bearing - capture.pan.position);
-  if (way_round_.active() && !way_round_.leaves_behind(straight, limits)) {  // met on the other side
-    way_round_.end();
-    pan_.reset();
-    pan_.begin();
-  }
+  if (!way_round_.leaves_behind(straight, limits)) way_round_.end();  // met on the other side
   FollowedAxis::Aim pan = pan_.observe(straight, moment.base, moment.times, parameters);
   FollowedAxis::Aim tilt = tilt_.observe(seen.elevation, {}, moment.times, parameters);
   left_ = pan.position + pan.rate * moment.times.horizon();
+  command.target = {pan.position, pan.rate};
   if (!limits.holds(pan.position)) {
-    if (goes_round(pan, moment)) return *go_on_round(moment);
+    if (goes_round(pan, moment)) {
+      command = *go_on_round(moment);
+      command.target = {pan.position, pan.rate};
+      return command;
+    }
     pan.move_to(limits.clamp(pan.position));
     command.limited = true;
   }

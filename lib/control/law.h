@@ -21,6 +21,7 @@ namespace cerberus::control {
 
 struct LawOptions {
   motion::Limits limits;
+  double base_turn = 0;  // radians a second that the base may be asked for; 0: it is not asked
   double turn_speed = sensing::radians(40);  // radians a second, for searching and returning
   Response response = Response::normal;
   bool keep_size = false;  // the zoom keeps a target at a third of the picture's height: zoom_control.h
@@ -44,7 +45,12 @@ struct Command {
   motion::AxisCommand pan, tilt;
   State state = State::holding;
   bool limited = false;  // the goal lies beyond a stop; the head goes to the nearest position
-  bool round = false;    // it goes all the way round, to a target that is out of the picture meanwhile
+  // Of a target that was seen on this frame: its pan angle when the command takes effect, and how fast that changes.
+  struct Target {
+    double pan = 0, rate = 0;
+  };
+  std::optional<Target> target{};
+  bool round = false;  // it goes all the way round, to a target that is out of the picture meanwhile
 };
 
 // The head at the two times that a command connects.

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,28 @@ using sensing::radians;
 namespace {
 
 constexpr vision::Size kPicture{640, 360};
+class StoppableHead : public drivers::Head {
+ public:
+  struct State {
+    bool pressed = false, parted = false;
+  };
+  explicit StoppableHead(std::shared_ptr<State> state) : state_(std::move(state)) {}
+  std::string open(const drivers::HeadSetup& setup) override { return head_->open(setup); }
+  void close() noexcept override { head_->close(); }
+  void stop(Time now) noexcept override { head_->stop(now); }
+  std::string command(const drivers::HeadCommand& command) override { return head_->command(command); }
+  std::string limit(Time now, const motion::Limits& limits) override { return head_->limit(now, limits); }
+  std::string state(Time time, Pose& pose) override { return head_->state(time, pose); }
+  bool emergency() override { return state_->pressed; }
+  bool parted() override { return std::exchange(state_->parted, false); }
+  bool simulated() const override { return true; }
+  bool blocks() const override { return false; }
+
+ private:
+  std::shared_ptr<State> state_;
+  std::unique_ptr<drivers::Head> head_ = drivers::make_head("simulated");
+};
+
 constexpr char kRound[] = "goes round to meet the track on the other side";
 using Bearing = std::function<double(double)>;  // degrees at a time, seconds
 
@@ -36,17 +59,26 @@ struct Rig {
   Time now{};
   motion::PoseHistory history;
   Status status;
-  double lost = 0;  // seconds out of the picture
+  double lost = 0;    // seconds out of the picture
+  double widest = 0;  // degrees of the head
+  // The base, degrees: it obeys at once, for half a second.
+  double yaw = 0, asked = 0;
+  Time asked_at{};
+  int requests = 0;
+  std::shared_ptr<StoppableHead::State> state = std::make_shared<StoppableHead::State>();
+  fusion::TrackState track = fusion::TrackState::seen;
   vision::Lens lens{radians(60), kPicture};
 
-  Rig() {
+  explicit Rig(double base_turn = 0) {
     drivers::HeadSetup setup;
     setup.pan = radians(100);
-    auto runner = std::make_unique<HeadRunner>(drivers::make_head("simulated"), nullptr);
+    auto runner = std::make_unique<HeadRunner>(std::make_unique<StoppableHead>(state), nullptr);
     runner->open(setup, 10s);
     controller.open(std::move(runner), setup);
     controller.set_clock_driven(true);
-    controller.set_options({}, {}, 500ms);
+    LawOptions law;
+    law.base_turn = radians(base_turn);
+    controller.set_options(law, {}, 500ms);
     controller.resume(now, out);
     tick();
   }
@@ -56,14 +88,25 @@ struct Rig {
     out.send([&](const char*, const Pose& pose) { history.add(pose); },
              [&](const char*, const Notice& notice) {
                if (const auto* said = std::get_if<Status>(&notice)) status = *said;
+               const auto* request = std::get_if<BaseTurnRequest>(&notice);
+               if (request == nullptr) return;
+               asked = degrees(request->yaw_rate);
+               asked_at = now;
+               ++requests;
              });
+  }
+  // Time goes on without frames.
+  void wait(Time length) {
+    for (const Time end = now + length; now < end; now += 20ms) tick();
   }
   // missing: what fusion decides while the person is out of the picture.
   void run(double until, const Bearing& bearing, Action missing = Action::hold) {
     for (; motion::seconds(now) < until; now += 20ms) {
       tick();
+      if (now - asked_at < 500ms) yaw += asked * .02;
+      widest = std::max(widest, std::abs(head()));
       if (now % 40ms != 0ms) continue;
-      const double off = sensing::wrap(radians(bearing(motion::seconds(now)) - head()));
+      const double off = sensing::wrap(radians(bearing(motion::seconds(now)) - yaw - head()));
       const bool seen = std::abs(off) < radians(29);
       lost += seen ? 0 : .04;
       const fusion::Track track{.id = 4,
@@ -71,7 +114,8 @@ struct Rig {
                                 .y = 130,
                                 .width = 40,
                                 .height = 100,
-                                .age = 2s};
+                                .age = 2s,
+                                .state = this->track};
       FusionDecision decision;
       decision.made.action = seen ? Action::track : missing;
       decision.made.rule_name = "test";
@@ -160,9 +204,60 @@ START_TEST(a_person_who_is_not_met_is_given_up) {
 }
 END_TEST
 
+START_TEST(a_base_that_is_asked_to_turn_keeps_the_person_within_the_stops) {
+  Rig rig(30);
+  rig.run(30, [](double t) { return std::min(100 + 20 * t, 400.); });
+  ck_assert_double_eq(rig.lost, 0);
+  ck_assert_double_le(rig.widest, 169);
+  ck_assert_double_ge(rig.yaw, 400 - 160);
+  ck_assert_double_eq(rig.asked, 0);
+  ck_assert_int_gt(rig.requests, 50);
+}
+END_TEST
+
+START_TEST(by_default_the_base_is_not_asked) {
+  Rig rig;
+  rig.run(12, crossing);
+  ck_assert_int_eq(rig.requests, 0);
+}
+END_TEST
+
+// Each ends it at once, or with the next frame, and only once.
+START_TEST(whatever_stops_the_head_and_the_loss_of_the_target_end_the_request) {
+  const struct {
+    const char* what;
+    std::function<void(Rig&)> end;
+  } cases[] = {
+      {"lost", [](Rig& rig) { rig.run(motion::seconds(rig.now) + .04, [](double) { return 0; }); }},
+      {"stop", [](Rig& rig) { rig.controller.stop(rig.now, rig.out); }},
+      {"move", [](Rig& rig) { rig.controller.move(0, 0, false, rig.now, rig.out); }},
+      {"turn", [](Rig& rig) { rig.controller.turn(.1, 0, rig.now, rig.out); }},
+      {"emergency", [](Rig& rig) { rig.state->pressed = true, rig.wait(40ms); }},
+      {"parted", [](Rig& rig) { rig.state->parted = true, rig.run(3.44, crossing); }},
+      {"predicted", [](Rig& rig) { rig.track = fusion::TrackState::coasted, rig.run(3.44, crossing); }},
+      {"watchdog", [](Rig& rig) { rig.wait(540ms); }},
+      {"halt", [](Rig& rig) { rig.controller.halt("paused", rig.now, 1s, rig.out); }},
+      {"end", [](Rig& rig) { rig.controller.end(rig.now, 1s, rig.out); }},
+  };
+  for (const auto& one : cases) {
+    Rig rig(30);
+    rig.run(3.4, crossing);
+    ck_assert_double_gt(rig.asked, 10);
+    one.end(rig);
+    rig.tick();
+    ck_assert_msg(rig.asked == 0, "%s: still asked for %g", one.what, rig.asked);
+    const int requests = rig.requests;
+    rig.wait(1s);
+    ck_assert_msg(rig.requests == requests, "%s: asked again", one.what);
+  }
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
-      "head_round", {a_person_who_crosses_behind_is_met_on_the_other_side,
-                     a_person_who_turns_back_behind_is_not_left, an_order_by_hand_ends_the_way_round_for_good,
-                     without_frames_the_watchdog_stops_the_way_round, a_person_who_is_not_met_is_given_up});
+      "head_round",
+      {a_person_who_crosses_behind_is_met_on_the_other_side, a_person_who_turns_back_behind_is_not_left,
+       an_order_by_hand_ends_the_way_round_for_good, without_frames_the_watchdog_stops_the_way_round,
+       a_person_who_is_not_met_is_given_up, a_base_that_is_asked_to_turn_keeps_the_person_within_the_stops,
+       by_default_the_base_is_not_asked, whatever_stops_the_head_and_the_loss_of_the_target_end_the_request});
 }

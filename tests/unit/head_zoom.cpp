@@ -41,6 +41,7 @@ class RecordedHead : public drivers::Head {
   std::string limit(Time now, const motion::Limits& limits) override { return head_->limit(now, limits); }
   std::string state(Time time, Pose& pose) override { return head_->state(time, pose); }
   bool emergency() override { return record_->emergency; }
+  bool simulated() const override { return true; }
   bool blocks() const override { return false; }
 
  private:
