@@ -5,6 +5,7 @@
 #include <glib-unix.h>
 #include <sys/ioctl.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace cerberus::robot {
@@ -90,8 +91,19 @@ void BaseOutput::send() {
 bool BaseOutput::drive(double speed, double yaw_rate) {
   if (program_ == nullptr) return false;
   drive_.drive(speed * settings_.max_speed, yaw_rate * settings_.max_yaw_rate, now());
+  repeat();
+  return true;
+}
+
+void BaseOutput::ask(double yaw_rate) {
+  if (program_ == nullptr) return;
+  drive_.ask(std::clamp(yaw_rate, -settings_.max_yaw_rate, settings_.max_yaw_rate), now());
+  repeat();
+}
+
+void BaseOutput::repeat() {
   send();
-  if (timer_ == 0)
+  if (timer_ == 0 && drive_.is_active())
     timer_ = g_timeout_add(
         kInterval,
         [](gpointer data) {
@@ -103,7 +115,6 @@ bool BaseOutput::drive(double speed, double yaw_rate) {
           return static_cast<gboolean>(G_SOURCE_REMOVE);
         },
         this);
-  return true;
 }
 
 void BaseOutput::stop() {

@@ -23,11 +23,14 @@ class BaseOutput {
   // Shares of the greatest speeds, -1 to 1; for 500 ms unless it is repeated. False: the program does not run.
   bool drive(double speed, double yaw_rate);
   void stop();
+  // A head asks for so many degrees a second; no more than the greatest yaw rate. 0: it asks no more.
+  void ask(double yaw_rate);
   // Once a second: starts the program where it does not run.
   void tick();
 
  private:
   void start();
+  void repeat();
   void close();
   void send();
   // Bytes of lines that the program has not read.

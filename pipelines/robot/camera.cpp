@@ -160,6 +160,12 @@ void Camera::on_report(const GstStructure* report) {
     if (topic && payload && on_publish_) on_publish_(*this, topic, payload);
     return;
   }
+  if (gst_structure_has_name(report, "cerberus-base-request")) {
+    double yaw_rate = 0;
+    if (gst_structure_get_double(report, "yaw-rate", &yaw_rate) && on_base_request_)
+      on_base_request_(state_ == State::running ? yaw_rate : 0);
+    return;
+  }
   const gchar* state = gst_structure_get_string(report, "state");
   if (state == nullptr) return;
   if (gst_structure_has_name(report, "cerberus-pantilt")) {

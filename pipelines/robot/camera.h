@@ -54,6 +54,9 @@ class Camera {
   // A message of mqttpublish whose topic the webhook wants.
   using OnPublish = std::function<void(const Camera&, const std::string& topic, const std::string& payload)>;
 
+  // The head asks the base for so many degrees a second.
+  using OnBaseRequest = std::function<void(double yaw_rate)>;
+
   // `rtsp` outlives the camera.
   Camera(const CameraSettings& settings, SharedSettings shared, RtspOutput& rtsp, OnOrder on_order);
   ~Camera();
@@ -94,6 +97,7 @@ class Camera {
   // The head stands until the next order by hand, or until it is given back.
   bool waits_for_order() const { return kept_stopped_ || head_waits_; }
 
+  void set_on_base_request(OnBaseRequest on_request) { on_base_request_ = std::move(on_request); }
   void set_on_publish(OnPublish on_publish) { on_publish_ = std::move(on_publish); }
   // How often a recording began, ended, failed or was deleted by retention.
   guint64 changes_of_recordings() const { return changes_of_recordings_; }
@@ -165,6 +169,7 @@ class Camera {
   OnOrder on_order_;
   OnPicture on_picture_;
   OnPublish on_publish_;
+  OnBaseRequest on_base_request_;
   Parameters parameters_;
   Mode mode_ = Mode::privacy;
   State state_ = State::off;

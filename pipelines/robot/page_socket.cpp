@@ -198,6 +198,9 @@ void PageServer::steer(Viewer& viewer, const PageCommand& command) {
   if (command.kind == Kind::stop) {
     if (house_.base != nullptr) house_.base->stop();
     done = camera.order("stop") || house_.base != nullptr;
+    // A head that may turn the base is stopped with it, whichever camera is shown.
+    for (const auto& other : house_.cameras)
+      if (property(other->settings().head, "base-turn", 0) > 0) other->order("stop");
     if (done) viewer.send("{\"done\":\"stopped\"}");
   } else if (command.kind == Kind::drive) {
     if (house_.base == nullptr || house_.mode() == Mode::privacy ||

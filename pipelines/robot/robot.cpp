@@ -119,6 +119,9 @@ std::unique_ptr<Camera> Robot::make_camera(const CameraSettings& settings) {
   camera->set_on_publish([this](const Camera& from, const std::string& topic, const std::string& payload) {
     if (webhook_) webhook_->add(from.settings().name, topic, payload);
   });
+  camera->set_on_base_request([this](double yaw_rate) {
+    if (base_) base_->ask(this->mode() == Mode::privacy || shutting_down_ > 0 ? 0 : yaw_rate);
+  });
 #endif
   return camera;
 }

@@ -67,6 +67,13 @@ struct Posting {
          head),
         (nullptr));
   }
+  void operator()(const control::BaseTurnRequest& request) const {
+    gst_element_post_message(
+        sink, gst_message_new_element(
+                  GST_OBJECT(sink),
+                  gst_structure_new("cerberus-base-request", "head", G_TYPE_STRING, head, "yaw-rate",
+                                    G_TYPE_DOUBLE, sensing::degrees(request.yaw_rate), nullptr)));
+  }
   void operator()(const control::MissingGyro&) const {
     CERBERUS_ELEMENT_WARNING(
         sink, RESOURCE, SETTINGS,

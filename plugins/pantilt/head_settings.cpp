@@ -64,6 +64,11 @@ const Property<HeadSettings> kProperties[] = {
              "IIO gyro on the body that carries the head, by name or id, and which of its axes points up, as "
              "'mpu6050 axis=-y' (z): its yaw rate is sent upstream as the base's")
         .read_at_start(),
+    property(
+        "base-turn", &HeadSettings::base_turn, 0, 360,
+        "Degrees a second for which the body below the head is asked at most (messages "
+        "cerberus-base-request) while a person whom the head follows is near its stops or beyond; 0 = it "
+        "is not asked"),
     property("keep-size", &HeadSettings::keep_size,
              "The zoom slowly keeps a followed person at a third of the picture's height: of a visca, onvif, "
              "v4l2, external or simulated head with a zoom-table"),
@@ -164,6 +169,7 @@ void copy_limits(const HeadSettings& from, HeadSettings& to) {
 
 control::LawOptions law_options(const HeadSettings& s) {
   return {.limits = head_limits(s),
+          .base_turn = radians(s.base_turn),
           .turn_speed = radians(s.turn_speed),
           .response = static_cast<control::Response>(s.response),
           .keep_size = s.keep_size};

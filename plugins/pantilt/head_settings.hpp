@@ -20,6 +20,7 @@ struct HeadSettings {
   std::string device, device_options, command, calibration, base_gyro, zoom_table;
   double lock_zoom = -1;
   bool keep_size = false;
+  double base_turn = 0;
   guint64 helper_timeout = 500 * GST_MSECOND;
   double horizontal_fov = 60;
   double pan_min = -170, pan_max = 170, tilt_min = -45, tilt_max = 45;

@@ -61,6 +61,14 @@
  * `holding`, `manual`, `limited`, `fault`, `homing`), `reason` and `waits-for-order` (boolean: only the next signal that
  * moves the head, or `auto`, ends its rest) at every change of one of them.
  *
+ * A person who crosses behind the head leaves the limits on one side and comes back on the other. The head waits at the
+ * limit while the person is in the picture from there; where the person leaves it, the head turns all the way round if
+ * it meets the person on the other side within 8 s and no later than here (state `turning`). With `base-turn` it asks the
+ * body below it to turn instead, from 20 degrees before the limit on until 45 degrees of room are left: the element message
+ * `cerberus-base-request` with `yaw-rate` (double, degrees a second, positive to the right) and `head`, ten times a second,
+ * and one of 0 at the end. It ends when the person is not seen, with an order by hand, an emergency stop, a fault, the
+ * watchdog's stop and in PAUSED; the application has to stop the body when none has come for 500 ms.
+ *
  * The pose of a real head that reports none is reckoned from its commands and corrected by the camera motion on the
  * frames (`motiondetect`, `cameramotion`); a head that has lost its reference looks for it (`homing`). One whose reports
  * contradict its commands for a second is stopped, with a warning and the state `fault`, and stands until `auto` or the

@@ -459,6 +459,33 @@ START_TEST(a_drive_of_the_base_is_repeated_and_ends_after_half_a_second) {
 }
 END_TEST
 
+START_TEST(a_head_may_ask_the_base_to_turn_and_an_order_by_hand_goes_first) {
+  BaseDrive base;
+  base.ask(0, kStart);
+  ck_assert(base.line(kStart).empty());  // nothing was asked for
+  base.ask(20, kStart);
+  ck_assert(base.line(kStart) == "drive 0 20\n");
+  base.ask(-10, kStart + milliseconds(50));
+  ck_assert(base.line(kStart + milliseconds(100)) == "drive 0 -10\n");
+  base.ask(0, kStart + milliseconds(110));
+  ck_assert(base.line(kStart + milliseconds(110)) == "stop\n");
+  base.ask(20, kStart + seconds(1));
+  ck_assert(base.line(kStart + seconds(1)) == "drive 0 20\n");
+  ck_assert(base.line(kStart + milliseconds(1500)) == "stop\n");  // it asked no more
+  base.ask(20, kStart + seconds(2));
+  base.stop(kStart + seconds(2));
+  ck_assert(base.line(kStart + seconds(2)) == "stop\n");
+  base.ask(20, kStart + milliseconds(3999));
+  ck_assert(base.line(kStart + milliseconds(3999)).empty());
+  base.drive(.5, 0, kStart + seconds(4));
+  base.ask(20, kStart + milliseconds(4050));
+  base.ask(0, kStart + milliseconds(4060));  // ends no order by hand
+  ck_assert(base.line(kStart + milliseconds(4060)) == "drive 0.5 0\n");
+  base.ask(20, kStart + seconds(6));
+  ck_assert(base.line(kStart + seconds(6)) == "drive 0 20\n");
+}
+END_TEST
+
 #if HAVE_ARGON2
 START_TEST(a_password_counts_for_its_role_alone_and_survives_a_restart) {
   Passwords passwords;
@@ -513,6 +540,7 @@ int main() {
           log_ins_that_were_right_slow_no_one_down,
           all_addresses_of_an_ipv6_network_wait_together,
           a_range_of_bytes_is_answered_in_part_as_a_whole_or_refused,
+          a_head_may_ask_the_base_to_turn_and_an_order_by_hand_goes_first,
           a_drive_of_the_base_is_repeated_and_ends_after_half_a_second,
           after_a_stop_by_another_session_the_one_that_moved_must_let_go_first,
           one_session_steers_until_it_was_silent_for_two_seconds,

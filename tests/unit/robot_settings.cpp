@@ -235,6 +235,13 @@ START_TEST(every_mistake_is_reported_with_its_line) {
            BACK PARTS("servo-pwm", "/sys/class/pwm/pwmchip0", "tilt='channel=1'"),
        "r.toml:14: \"device-options\" of camera \"b\" is \"channel=1\", which is in use by the head of "
        "camera \"front\""},
+      {"[[camera]]\nname = \"a\"\nkind = \"test\"\n[camera.head]\nbase-turn = 30\n",
+       "r.toml:5: \"base-turn\" of camera \"a\" asks a base to turn, and there is none: add a [base]"},
+      {"[base]\ncommand = \"cat\"\n" SMALLEST
+       "[camera.head]\nbase-turn = 30\n[[camera]]\nname = \"b\"\nkind = "
+       "\"test\"\n[camera.head]\nbase-turn = 20\n",
+       "\"base-turn\" of camera \"b\" is \"20\", which is in use by the head of camera \"front\" already: "
+       "one head"},
       {"[page]\nport = \n", "r.toml:2: "},
       {"[page]\nlisten = \"localhost\"\n", "r.toml:2: \"listen\" is a numeric address"},
       {"[page]\nlisten = \"127.0.0.1:80\"\n", "r.toml:2: \"listen\" is a numeric address"},

@@ -82,6 +82,7 @@ constexpr Option kHead[] = {
     {"lock-zoom", K::number, -1, 2},
     {"keep-size", K::truth},
     {"base-gyro", K::text},
+    {"base-turn", K::number, 0, 360},
     {"watchdog-timeout", K::seconds, 0.05, 60},
     {"manual-timeout", K::seconds, 0, kDay},
 };

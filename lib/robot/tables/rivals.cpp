@@ -143,6 +143,17 @@ void take_head(const CameraSettings& camera, Owners& owners) {
   if (options) take_motors(camera, driver, device->value, *options, owners);
 }
 
+// One head at most asks the base to turn.
+void take_base(const Settings& settings, const CameraSettings& camera, Owners& owners, Mistakes& mistakes) {
+  const Property* turn = find(camera.head, "base-turn");
+  if (turn == nullptr || turn->value.find_first_not_of("0.") == std::string::npos) return;
+  if (!settings.base)
+    mistakes.push_back({turn->line, "\"base-turn\" of camera \"" + camera.name +
+                                        "\" asks a base to turn, and there is none: add a [base]"});
+  owners.take("base", {camera, "the head of ", turn->line, "base-turn", turn->value},
+              "one head asks the base to turn");
+}
+
 void take_sensors(const CameraSettings& camera, Owners& owners) {
   const std::string driver = value(camera.sensors, "driver");
   if (driver == "gpio") {
@@ -200,6 +211,7 @@ void find_rivals(const Settings& settings, Mistakes& mistakes) {
     take_source(camera, owners);
     take_head(camera, owners);
     take_sensors(camera, owners);
+    take_base(settings, camera, owners, mistakes);
     const bool records = camera.recorder || (settings.rtsp && settings.rtsp->plain);
     if (!camera.source.record_uri.empty() && !records)
       mistakes.push_back(
