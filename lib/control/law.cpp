@@ -46,7 +46,7 @@ Command Law::track(vision::Point target, const vision::Lens& lens, const Moment&
   const bool placed = std::isfinite(ahead.pan.position) && std::isfinite(ahead.tilt.position);
   if (!std::isfinite(seen.bearing) || !std::isfinite(seen.elevation) || !placed) return {};
   const FollowedAxis::Parameters parameters{options_.response, options_.gain, options_.dead_band_start,
-                                            options_.dead_band_stop};
+                                            options_.dead_band_stop, moment.view};
   Command command;
   command.state = State::tracking;
   const motion::AxisLimits &limits = options_.limits.pan, &tilt_limits = options_.limits.tilt;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace cerberus::control {
 
@@ -45,6 +46,9 @@ struct Constants {
   // A position command leads this far beyond the target, so that the head does not brake before it. derived: seven
   // frames, less than the watchdog's time.
   double lead = .3;  // seconds
+  // From one picture to the next the head turns by no more than this share of what is seen, so that the picture's motion
+  // is found. derived: half of what registration searches
+  double most_turn = .2;
 };
 constexpr Constants kConstants;
 
@@ -53,6 +57,12 @@ constexpr Constants kConstants;
 double pace(Response response) {
   constexpr double kCalm = .7, kFast = 1.4;
   return response == Response::calm ? kCalm : response == Response::fast ? kFast : 1;
+}
+
+// Of angles, against a lens of 60 degrees, at most 1: as much smaller as a longer lens shows the target larger.
+double view_scale(double field_of_view) {
+  constexpr double kUsual = std::numbers::inv_sqrt3;  // tan 30
+  return field_of_view > 0 ? std::min(1.0, std::tan(field_of_view / 2) / kUsual) : 1;
 }
 
 // Of the bandwidth: what a long way from picture to effect, and pictures that are far between, leave of it.
@@ -66,19 +76,22 @@ double slowed(double horizon, double interval) {
 FollowedAxis::Aim FollowedAxis::observe(double angle, const BaseTurn& base, const Times& times,
                                         const Parameters& parameters) {
   const Constants& c = kConstants;
+  const double view = view_scale(parameters.field_of_view);
   interval_ = quick_.known() ? std::clamp(times.taken - taken_, 0.0, TargetFilter::kPause) : 0;
   taken_ = times.taken;
   const double world = angle + base.taken, v = quick_.known() ? quick_.rate() : 0;
   // Its bandwidth goes with the fourth root of its density. Rare pictures slow a filter by themselves.
   const double faster = square(square(pace(parameters.response) * slowed(times.horizon(), 0)));
-  quick_.add(times.taken, world,
-             {c.box_noise, faster * (c.standing + c.passing * square(v * v)), c.first_rate});
-  slow_.add(times.taken, world, {c.box_noise, c.slow, c.first_rate});
+  quick_.add(
+      times.taken, world,
+      {c.box_noise * view, faster * (c.standing * square(view) + c.passing * square(v * v)), c.first_rate});
+  slow_.add(times.taken, world, {c.box_noise * view, c.slow * square(view), c.first_rate});
   Aim aim;
   aim.position = quick_.at(times.effect) - base.effect;
   aim.rate = quick_.rate() - base.rate;
   aim.calm = slow_.at(times.taken) - base.effect;
-  if (std::abs(slow_.rate() - base.rate) >= c.still || std::abs(aim.position - aim.calm) >= c.agree)
+  if (std::abs(slow_.rate() - base.rate) >= c.still * view ||
+      std::abs(aim.position - aim.calm) >= c.agree * view)
     moved_ = times.taken;
   aim.stands = times.taken - moved_ > c.held;
   return aim;
@@ -105,8 +118,8 @@ motion::AxisCommand FollowedAxis::command(const Aim& aim, const motion::AxisStat
                                           const Parameters& parameters) {
   const double target = aim.stands ? aim.calm : aim.position, rate = aim.stands ? 0 : aim.rate;
   const double error = target - ahead.position, size = std::abs(error);
-  const double start = parameters.dead_band_start;
-  moves_ = moves_ ? std::abs(rate) > kConstants.still || size > parameters.dead_band_stop
+  const double view = view_scale(parameters.field_of_view), start = view * parameters.dead_band_start;
+  moves_ = moves_ ? std::abs(rate) > view * kConstants.still || size > view * parameters.dead_band_stop
                   : std::abs(aim.calm - ahead.position) > start ||
                         std::abs(aim.position - ahead.position) > kConstants.quick_start * start;
   if (!moves_) {
@@ -116,7 +129,10 @@ motion::AxisCommand FollowedAxis::command(const Aim& aim, const motion::AxisStat
   }
   const double quick = pace(parameters.response) * slowed(times.horizon(), interval_);
   const double close = std::min(quick * parameters.gain * size, std::sqrt(2 * limits.acceleration * size));
-  const double wanted = std::clamp(rate + std::copysign(close, error), -limits.speed, limits.speed);
+  double most = limits.speed;
+  if (parameters.field_of_view > 0 && interval_ > 0)
+    most = std::min(most, kConstants.most_turn * parameters.field_of_view / interval_);
+  const double wanted = std::clamp(rate + std::copysign(close, error), -most, most);
   const double speed = shaped(wanted, ahead, limits.acceleration, times, quick * kConstants.smoothing);
   double goal = target + rate * kConstants.lead;
   // The speed leads away from there: a target that comes nearer faster than the head should go.

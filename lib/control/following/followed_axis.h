@@ -34,6 +34,9 @@ class FollowedAxis {
     double gain = 6.5;                              // radians a second for each radian of error
     double dead_band_start = sensing::radians(3);   // radians
     double dead_band_stop = sensing::radians(0.7);  // radians
+    // What the camera sees over the picture's width, radians; 0: not known, 60 degrees. Through a longer lens the boxes' noise
+    // and the dead bands are smaller angles, and so is what the picture may turn by from one to the next.
+    double field_of_view = 0;
   };
   // When the frame was taken, and when the command takes effect: seconds.
   struct Times {
