@@ -5,6 +5,15 @@
 
 namespace cerberus::sim {
 
+void Camera::look_through(double field_of_view) {
+  const double scale = std::tan(field_of_view / 2) / std::tan(traits_.field_of_view / 2);
+  traits_.field_of_view = field_of_view;
+  traits_.box_noise *= scale;
+  traits_.edge *= scale;
+  traits_.turn_noise *= scale;
+  noise_ *= scale;
+}
+
 Picture Camera::take(Time now, double off, double direction, bool there) {
   ++taken_;
   next_ = Time(static_cast<Time::rep>(std::llround(static_cast<double>(taken_) / traits_.frames * 1e9)));
@@ -13,6 +22,7 @@ Picture Camera::take(Time now, double off, double direction, bool there) {
   noise_ = a * noise_ + std::sqrt(1 - a * a) * traits_.box_noise * gauss_(random_);
   Picture picture;
   picture.taken = now;
+  picture.field_of_view = traits_.field_of_view;
   picture.seen = there && std::abs(off) < traits_.field_of_view / 2 - traits_.edge;
   picture.off = off + noise_;
   picture.turn = direction - direction_ + traits_.turn_noise * gauss_(random_);

@@ -24,14 +24,17 @@ struct CameraTraits {
 struct Picture {
   Time taken{};
   bool seen = false;
-  double off = 0;   // of the box's middle from the optical axis, to the right
-  double turn = 0;  // of the picture since the one before, as measured
+  double field_of_view = 0;  // over the width, then
+  double off = 0;            // of the box's middle from the optical axis, to the right
+  double turn = 0;           // of the picture since the one before, as measured
 };
 
 class Camera {
  public:
   Camera(const CameraTraits& traits, unsigned seed) : traits_(traits), random_(seed) {}
   const CameraTraits& traits() const { return traits_; }
+  // The zoom has changed: the box's noise and the edge stay the same in pixels.
+  void look_through(double field_of_view);
   // When the next picture is due.
   Time next() const { return next_; }
   // Takes it. off: of the person from the optical axis; direction: of the camera in the world.

@@ -47,7 +47,17 @@ Scene scene(const std::string& name, unsigned seed) {
   if (name == "far") made.person = walker(8, 1.4, 1.5, phase);
   if (name == "run") made.person = walker(4, 4, 3, phase);
   if (name == "wander") made.wander = .3;
-  if (name == "behind") made.person = arc_walker(distance, radians(250), 1.4, 1.5);
+  made.asks = name == "turned";
+  if (name == "behind" || name == "turned") made.person = arc_walker(distance, radians(250), 1.4, 1.5);
+  if (name == "zoom") {
+    // On a line that leads by at 1.5 m: so the bearing changes, too.
+    const Shuttle line(20, 1.4, 1.5, 5);
+    const double side = between(-1.5, 1.5);
+    made.distance = [=](double t) { return std::hypot(25 - line.at(t), side); };
+    made.person = [=](double t) { return std::atan2(side, 25 - line.at(t)); };
+    made.hidden = [](double t) { return std::fmod(t, 15) > 12; };
+    made.length = 90;
+  }
   if (name == "step") {
     made.person = standing(radians(100));
     made.sector = true;

@@ -7,6 +7,8 @@
 //   rest     stands within 20 degrees of straight ahead   wander    the same; its box wanders (CameraTraits::wander)
 //   step     stands 100 degrees to the right: out of the picture at first, and a sensor's sector says search
 //   behind   walks at 1.4 m/s on an arc 3 to 8 m away, to and fro between 0 and 250 degrees: each way it crosses behind
+//   turned   the same, and the base turns where it is asked (asked_base.h); its turn is reported
+//   zoom     comes from 25 m to 5 m and goes back, to and fro before the robot; hidden for 3 s of each 15; the camera zooms
 //   gyro     stands; the base turns 90 degrees to and fro at 45 a second, rests 2 s, and its turn is reported
 //   nogyro   the same, and nothing is reported            picture   reported as the picture shows it
 #pragma once
@@ -16,8 +18,8 @@
 
 namespace cerberus::sim {
 
-inline constexpr const char* kScenes[] = {"mix",  "near",   "far",  "run",    "rest",   "wander",
-                                          "step", "behind", "gyro", "nogyro", "picture"};
+inline constexpr const char* kScenes[] = {"mix",  "near",   "far",    "run",  "rest",   "wander",
+                                          "step", "behind", "turned", "gyro", "nogyro", "picture"};
 
 enum class BaseReport { turn, none, from_picture };
 
@@ -29,6 +31,9 @@ struct Scene {
   BaseReport report = BaseReport::turn;
   bool sector = false;  // a sensor's sector leads to the person while it is out of the picture
   double wander = 0;    // of the box, as in CameraTraits
+  bool asks = false;    // the base turns as it is asked, beside `base`
+  std::function<double(double)> distance;  // metres at a time; empty: boxes are of no size
+  std::function<bool(double)> hidden = [](double) { return false; };
 };
 
 // The scene of that name; what differs between persons differs by the seed. An unknown name is a person that stands.

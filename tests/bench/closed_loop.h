@@ -9,6 +9,7 @@
 #include "sim/head_kinds.h"
 #include "sim/scenes.h"
 #include "sim/score.h"
+#include "sim/zoom_lens.h"
 
 namespace cerberus::bench {
 
@@ -20,6 +21,7 @@ struct Seen {
   double base_turn = 0;  // since the picture before, as reported
   double base_yaw = 0;   // the same as a sum
   bool base_reported = false;
+  double height = 0;    // of the box, of the picture's height; 0: of no account
   bool sector = false;  // a sensor's sector says where the person is: at `bearing` from the base
   double bearing = 0;
 };
@@ -31,9 +33,12 @@ class FollowingLaw {
   virtual void elapse(Time now) = 0;
   // Where the law believes that the camera looked at a time, from the base; peers do not say.
   virtual double look(Time) { return 0; }
+  // The yaw rate for which it asks the base now.
+  virtual double asks_base() { return 0; }
 };
 
+// lens: of a camera with a zoom, which the law drives.
 sim::Score run(FollowingLaw& law, sim::PanHead& head, const sim::Scene& scene, sim::CameraTraits camera,
-               unsigned seed);
+               unsigned seed, sim::ZoomLens* lens = nullptr);
 
 }  // namespace cerberus::bench

@@ -4,6 +4,7 @@
 // numbers are of this model: white or wandering boxes, one person, no tilt, no head that slips.
 //
 //   bench-heads                     all tables, judged
+//   bench-heads zoom [20]           keep-size alone, this number of seeds
 //   bench-heads AB mix,gyro [20]    these heads and scenes (lib/sim/head_kinds.h, scenes.h), this number of seeds
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "asked.h"
+#include "heads_zoom.h"
 #include "peer_laws.h"
 #include "project_law.h"
 
@@ -85,6 +87,7 @@ struct Bound {
   double promised, goal;
 };
 
+constexpr char kOut[] = "out of the picture, %";
 constexpr char kRms[] = "RMS", kReversals[] = "reversals", kSeen[] = "in the picture";
 
 const Bound kBounds[] = {
@@ -106,6 +109,10 @@ const Bound kBounds[] = {
     {"C", "gyro", kRms, &Figures::rms, 5.4, 1.8},
     {"C", "step", kSeen, &Figures::seen, 1.7, 1.7},
     {"D", "mix", kRms, &Figures::rms, 6, 4},
+    {"AF", "behind", kOut, &Figures::lost, 21, 18},
+    {"BK", "behind", kOut, &Figures::lost, 19, 18},
+    {"CDL", "behind", kOut, &Figures::lost, 32, 26},
+    {"ABCFK", "turned", kOut, &Figures::lost, 1, 0},
     {"ABCFK", "rest", kReversals, &Figures::reversals, 1, 1},
     {"ABCFK", "wander", kReversals, &Figures::reversals, 6, 3},
     {"ABCFK", "mix", kReversals, &Figures::reversals, 20, 10},
@@ -235,6 +242,10 @@ std::vector<std::string> split(const std::string& words) {
 
 int main(int argc, char** argv) {
   Asked asked;
+  if (argc > 1 && std::strcmp(argv[1], "zoom") == 0) {
+    print_zoom(asked, argc > 2 ? std::atoi(argv[2]) : kSeeds);
+    return asked.verdict();
+  }
   if (argc > 2) {
     print_project(asked, argv[1], split(argv[2]), argc > 3 ? std::atoi(argv[3]) : kSeeds);
     return 0;
@@ -243,5 +254,6 @@ int main(int argc, char** argv) {
   const Table project = print_project(asked, sim::kHeadKinds, scenes, kSeeds);
   print_peers(asked, project);
   print_slower(asked, project);
+  print_zoom(asked, kSeeds);
   return asked.verdict();
 }

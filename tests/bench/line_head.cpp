@@ -49,6 +49,7 @@ Time LineHead::serve(Time now) {
   now_ = now;
   const Time next = client_->serve(now);
   report_position(now);
+  report_zoom();
   flush();
   return std::min(next, now + kLongest);
 }
@@ -62,6 +63,12 @@ void LineHead::report_position(Time now) {
   line.pan.position = past_.front().pan;
   line.age = motion::seconds(now - past_.front().time);
   answers_.push_back(drivers::pose_line(line));
+}
+
+void LineHead::report_zoom() {
+  if (!lens_ || lens_->reported() == told_zoom_) return;
+  told_zoom_ = lens_->reported();
+  answers_.push_back(drivers::zoom_line({table_.position_for(told_zoom_)}));
 }
 
 void LineHead::obey(const motion::AxisCommand& command) {
@@ -80,9 +87,12 @@ void LineHead::on_line(const std::string& text) {
     abilities.position = !machine_.traits().turns_only;
     abilities.feedback = kind_.reports;
     abilities.rate = machine_.traits().rate;
+    abilities.zoom = lens_ != nullptr;
     answers_.push_back(drivers::ready_line(abilities));
   } else if (const auto* move = std::get_if<drivers::MoveLine>(&*line)) {
     obey(move->pan);
+  } else if (const auto* zoom = std::get_if<drivers::ZoomLine>(&*line); zoom && lens_) {
+    lens_->command(table_.field_of_view(zoom->position), now_);
   } else if (std::get_if<drivers::StopLine>(&*line)) {
     obey({});
   }

@@ -10,6 +10,7 @@
 #include "drivers/head/head.h"
 #include "drivers/helper/helper_client.h"
 #include "sim/head_kinds.h"
+#include "sim/zoom_lens.h"
 
 namespace cerberus::bench {
 
@@ -17,7 +18,10 @@ using motion::Time;
 
 class LineHead final : public drivers::Head {
  public:
-  LineHead(const sim::HeadKind& kind, sim::PanHead& machine) : kind_(kind), machine_(machine) {}
+  // lens: of a camera with a zoom, whose field of view the protocol has as a position of `table`.
+  LineHead(const sim::HeadKind& kind, sim::PanHead& machine, sim::ZoomLens* lens = nullptr,
+           const motion::ZoomTable& table = {})
+      : kind_(kind), machine_(machine), lens_(lens), table_(table) {}
 
   std::string open(const drivers::HeadSetup& setup) override;
   void close() noexcept override {}
@@ -34,10 +38,14 @@ class LineHead final : public drivers::Head {
   void on_line(const std::string& text);
   void obey(const motion::AxisCommand& command);
   void report_position(Time now);
+  void report_zoom();
   void flush();
 
   const sim::HeadKind& kind_;
   sim::PanHead& machine_;
+  sim::ZoomLens* lens_;
+  motion::ZoomTable table_;
+  double told_zoom_ = -1;
   std::optional<drivers::HelperClient> client_;
   std::deque<std::string> answers_;
   Time now_{}, next_report_{};

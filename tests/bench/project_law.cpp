@@ -14,6 +14,7 @@ using sensing::radians;
 using std::chrono::milliseconds;
 
 constexpr vision::Size kPicture{640, 360};
+constexpr double kBaseTurn = radians(30);    // what bases are asked for at most
 constexpr double kSectorHalf = radians(30);  // of what a sensor sees, as the fuser pulls it in by half a lens
 
 Time time_of(double seconds) {
@@ -47,18 +48,25 @@ drivers::HeadSetup setup_for(const sim::HeadKind& kind, const sim::PanHead& mach
 
 }  // namespace
 
-ProjectLaw::ProjectLaw(const sim::HeadKind& kind, sim::PanHead& machine, const sim::CameraTraits& camera)
-    : lens_(camera.field_of_view, kPicture), frame_length_(time_of(1 / camera.frames)) {
+ProjectLaw::ProjectLaw(const sim::HeadKind& kind, sim::PanHead& machine, const sim::CameraTraits& camera,
+                       sim::ZoomLens* lens)
+    : lens_(camera.field_of_view, kPicture),
+      frame_length_(time_of(1 / camera.frames)),
+      field_of_view_(camera.field_of_view) {
   pixel_turn_ = control::base_turn(vision::Transform::translation(-1, 0), lens_, kPicture, {}, {}).yaw;
-  const drivers::HeadSetup setup = setup_for(kind, machine);
-  auto head = std::make_unique<LineHead>(kind, machine);
+  drivers::HeadSetup setup = setup_for(kind, machine);
+  if (lens) must(setup.zoom_table.parse("0 60; 1 4").empty(), "the zoom's table is none");
+  auto head = std::make_unique<LineHead>(kind, machine, lens, setup.zoom_table);
   head_ = head.get();
   auto runner = std::make_unique<drivers::HeadRunner>(std::move(head), nullptr);
   must(runner->open(setup, std::chrono::seconds(10)) == drivers::HeadRunner::Answer::done,
        "the simulated head does not open");
   controller_.open(std::move(runner), setup);
   controller_.set_clock_driven(true);
-  controller_.set_options({}, {}, milliseconds(500));
+  control::LawOptions options;
+  options.keep_size = lens != nullptr;
+  options.base_turn = kBaseTurn;
+  controller_.set_options(options, {}, milliseconds(500));
   controller_.set_limits(setup.limits, std::nullopt);
   act([&](auto& out) { controller_.resume(Time::zero(), out); });
 }
@@ -75,13 +83,19 @@ void ProjectLaw::elapse(Time now) {
 void ProjectLaw::on_picture(const Seen& seen, Time now) {
   elapse(now);
   const sim::Picture& picture = seen.picture;
+  if (const double view = controller_.field_of_view(picture.taken, field_of_view_); view != field_of_view_) {
+    field_of_view_ = view;
+    lens_ = vision::Lens(view, kPicture);
+    pixel_turn_ = control::base_turn(vision::Transform::translation(-1, 0), lens_, kPicture, {}, {}).yaw;
+  }
   std::vector<fusion::Track> tracks;
   if (picture.seen) {
     fusion::Track track;
     track.id = 1;
     track.width = 40;
-    track.height = 100;
-    track.x = kPicture.width / 2. + lens_.focal_length() * std::tan(picture.off) - track.width / 2;
+    track.height = seen.height > 0 ? std::min(1., seen.height) * kPicture.height : 100;
+    const double focal = kPicture.width / 2. / std::tan(picture.field_of_view / 2);  // the true one
+    track.x = kPicture.width / 2. + focal * std::tan(picture.off) - track.width / 2;
     track.y = kPicture.height / 2. - track.height / 2;
     track.age = std::chrono::seconds(2);
     tracks.push_back(track);

@@ -12,11 +12,14 @@ namespace cerberus::bench {
 
 class ProjectLaw final : public FollowingLaw {
  public:
-  ProjectLaw(const sim::HeadKind& kind, sim::PanHead& machine, const sim::CameraTraits& camera);
+  // lens: of a camera with a zoom, which keeps the person's size.
+  ProjectLaw(const sim::HeadKind& kind, sim::PanHead& machine, const sim::CameraTraits& camera,
+             sim::ZoomLens* lens = nullptr);
   ~ProjectLaw() override;
   void on_picture(const Seen& seen, Time now) override;
   void elapse(Time now) override;
   double look(Time time) override { return published_.at(time).pan.position; }
+  double asks_base() override { return asks_base_; }
 
  private:
   template <typename F>
@@ -24,7 +27,10 @@ class ProjectLaw final : public FollowingLaw {
     control::DeferredNotifications out(queue_, name_);
     f(out);
     out.send([this](const char*, const motion::Pose& pose) { published_.add(pose); },
-             [](const char*, const control::Notice&) {});
+             [this](const char*, const control::Notice& notice) {
+               if (const auto* request = std::get_if<control::BaseTurnRequest>(&notice))
+                 asks_base_ = request->yaw_rate;
+             });
   }
 
   vision::Lens lens_;
@@ -36,6 +42,8 @@ class ProjectLaw final : public FollowingLaw {
   control::HeadController controller_;
   motion::PoseHistory published_;
   Time next_tick_{}, next_serve_{};
+  double field_of_view_;  // where the head's zoom says nothing
+  double asks_base_ = 0;
 };
 
 }  // namespace cerberus::bench
