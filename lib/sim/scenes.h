@@ -8,7 +8,7 @@
 //   step     stands 100 degrees to the right: out of the picture at first, and a sensor's sector says search
 //   behind   walks at 1.4 m/s on an arc 3 to 8 m away, to and fro between 0 and 250 degrees: each way it crosses behind
 //   turned   the same, and the base turns where it is asked (asked_base.h); its turn is reported
-//   zoom     comes from 25 m to 5 m and goes back, to and fro before the robot; hidden for 3 s of each 15; the camera zooms
+//   zoom     comes from 25 m to 7 m and goes back, to and fro before the robot; hidden for 3 s of each 15; the camera zooms
 //   gyro     stands; the base turns 90 degrees to and fro at 45 a second, rests 2 s, and its turn is reported
 //   nogyro   the same, and nothing is reported            picture   reported as the picture shows it
 #pragma once

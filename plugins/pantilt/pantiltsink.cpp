@@ -30,7 +30,7 @@
  * of `horizontal-fov` and is part of its poses (`field-of-view`); `lock-zoom` keeps the zoom instead. With neither a
  * warning says that every angle depends on it. With `keep-size` the zoom of such a head (also of a `simulated` one, which
  * has a zoom where it has a table) slowly keeps a followed person at a third of the picture's height: twice as near within
- * six seconds, only while the person is seen, no nearer while it is off the middle, and never by an order by hand, during
+ * five seconds, only while the person is seen, no nearer while it is off the middle, and never by an order by hand, during
  * an emergency stop or after the watchdog's stop.
  *
  * The newest frame counts: one whose running time is not newer than the last one's is dropped. A single time stamp more

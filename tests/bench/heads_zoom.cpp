@@ -116,7 +116,7 @@ ZoomFigures medians(char letter, bool keeps, int seeds) {
 
 void print_zoom(Asked& asked, int seeds) {
   std::printf(
-      "\nkeep-size: a person who comes from 25 m to 5 m and goes back, hidden for 3 s of each 15; %d seeds\n"
+      "\nkeep-size: a person who comes from 25 m to 7 m and goes back, hidden for 3 s of each 15; %d seeds\n"
       "head keep-size  a third within 1.5, %%  out, %%  zoom while hidden, %%  reversals  off the middle, "
       "%%\n",
       seeds);
@@ -126,7 +126,7 @@ void print_zoom(Asked& asked, int seeds) {
       const std::string head(1, letter);
       std::string words;
       if (keeps)
-        words = asked.at_least(head + ", zoom, a third within 1.5", f.right, 90) +
+        words = asked.at_least(head + ", zoom, a third within 1.5", f.right, 85) +
                 asked.at_most(head + ", zoom, out of the picture", f.out, 1) +
                 asked.at_most(head + ", zoom while hidden", f.blind, 3) +
                 asked.at_most(head + ", reversals of the zoom", f.reversals, 6);

@@ -39,10 +39,11 @@ std::optional<double> ZoomKeeper::update(double taken, const std::optional<Sight
   size_ = size_ ? *size_ + (1 - std::exp(-dt / p.slowness)) * (size - *size_) : size;
   if (taken - stepped_ < p.period) return std::nullopt;
   // Of the time without a step no step is made up for.
-  const double step = p.pace * std::min(taken - stepped_, 2 * p.period);
+  const double time = std::min(taken - stepped_, 2 * p.period);
   stepped_ = taken;
 
-  const double from = std::clamp(commanded_.value_or(here), here - p.lead, here + p.lead);
+  const double from =
+      std::clamp(commanded_.value_or(here), here - p.narrows * p.lead, here + p.widens * p.lead);
   const double wanted =
       std::clamp(*size_ - std::log(p.share), log_tangent(range.narrowest), log_tangent(range.widest));
   const double error = wanted - from;
@@ -50,7 +51,7 @@ std::optional<double> ZoomKeeper::update(double taken, const std::optional<Sight
   const bool narrows = error < 0;
   const bool may_narrow = sight->whole && sight->off < p.centred && taken - since_ >= p.settled;
   if (!moves_ || (narrows && !may_narrow)) return std::nullopt;
-  commanded_ = from + std::clamp(error, -step, step);
+  commanded_ = from + std::clamp(error, -p.narrows * time, p.widens * time);
   return 2 * std::atan(std::exp(*commanded_));
 }
 

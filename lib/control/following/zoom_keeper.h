@@ -3,7 +3,7 @@
 //
 //   size  = log(height of its box x t),  t = tan(field of view / 2)    what the lens does not change; low-pass of `slowness`
 //   error = size - log(share) - log t                                  > 0: it is too tall, the view is to become wider
-//   the zoom moves from |error| > start on until |error| < stop, by at most `pace`, in steps
+//   the zoom moves from |error| > start on until |error| < stop, by at most `narrows` and `widens`, in steps
 //
 // Each step is a field of view of its own: without the next one the zoom stands. There is no step while the target is not
 // seen, and none towards a narrower view while it is off the middle or has only just been found. A box that the picture's
@@ -22,11 +22,12 @@ class ZoomKeeper {
     double slowness = 1;    // seconds. derived: two steps of a walker, whose box is taller and lower in turn
     double start = .26;  // derived: a factor of 1.3, the box of a walker with the arms up against one at rest
     double stop = .05;   // derived: a factor of 1.05, what a box's height is off by
-    double pace = .115;  // 1/s: derived, twice as near within six seconds
+    double narrows = .14;  // 1/s: derived, twice as near within five seconds
+    double widens = .28;   // 1/s: derived, a walker at 1.4 m/s who comes, 5 m away: 1.4 / 5
     double period = .2;  // seconds from step to step. derived: cameras take five commands a second
     // The zoom that was asked for is at most this far ahead of the reported one, which comes twice a second. derived: the
-    // pace times the age of a report, .7 s, and as much for the lens to get there.
-    double lead = .16;
+    // age of a report, .7 s, and as much for the lens to get there.
+    double lead = 1.4;  // seconds
     // Of the target's middle from the picture's, of half a picture: beyond, the view becomes no narrower. chosen
     double centred = .4;
     double settled =
