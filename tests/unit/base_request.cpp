@@ -49,8 +49,12 @@ END_TEST
 START_TEST(narrow_limits_leave_half_of_them) {
   const AxisLimits narrow{radians(-60), radians(60)};
   BaseRequest request;
-  ck_assert_double_eq_tol(ask(request, 41, 0, narrow), 11, 1e-9);
-  ck_assert_double_eq(ask(request, 29, 0, narrow), 0);
+  ck_assert_double_eq_tol(ask(request, 46, 0, narrow), 16, 1e-9);
+  ck_assert_double_eq(ask(request, 30, 0, narrow), 0);
+  ck_assert_double_eq(ask(request, 44, 0, narrow), 0);  // it begins a quarter before the stop
+  const AxisLimits narrower{radians(-4), radians(4)};
+  ck_assert_double_eq(ask(request, -2.9, 0, narrower), 0);
+  ck_assert_double_eq_tol(ask(request, -6, 0, narrower), -4, 1e-9);
 }
 END_TEST
 

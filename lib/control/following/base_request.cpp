@@ -11,9 +11,9 @@ double BaseRequest::update(double target, double rate, const motion::AxisLimits&
   const double place = target + rate * p.ahead;
   if (!(most > 0) || !std::isfinite(place))
     side_ = 0;
-  else if (side_ == 0 && place > limits.to - p.near)
+  else if (side_ == 0 && place > limits.to - std::min(p.near, limits.to / 4))
     side_ = 1;
-  else if (side_ == 0 && place < limits.from + p.near)
+  else if (side_ == 0 && place < limits.from + std::min(p.near, -limits.from / 4))
     side_ = -1;
   if (side_ == 0) return 0;
   const double stop = side_ > 0 ? limits.to : -limits.from;

@@ -13,11 +13,11 @@ namespace cerberus::control {
 
 class BaseRequest {
  public:
-  // Guarded by unit-base_request and bench-heads (behind-base).
+  // Guarded by unit-base_request and bench-heads (turned).
   struct Parameters {
     double ahead = .7;  // seconds. derived: a base takes as long to follow an order
-    double near =
-        sensing::radians(20);  // derived: a third of a usual view, in which a base reaches a walker's rate
+    // At most a quarter of the way to the stop. derived: a third of a usual view, in which a base reaches a walker's rate
+    double near = sensing::radians(20);
     double room = sensing::radians(45);  // at most half of the way from straight ahead to the stop
     double gain = 1;                     // 1/s. derived: the room closes within a second
     double least = sensing::radians(1);  // a second; less is not asked for. derived: bases creep no slower
