@@ -9,6 +9,9 @@
  * pose, resampled with sub-pixel precision. With a `pantiltsink driver=simulated` downstream a fixed 4K camera becomes
  * a pan-tilt camera without a motor, and the whole loop can be closed on recorded footage.
  *
+ * A head that publishes what its zoom sees (`pantiltsink driver=simulated` with a `zoom-table` and `keep-size`) zooms
+ * the window, as far as the wide picture reaches: `horizontal-fov` is then what the widest zoom sees.
+ *
  * The head publishes its pose by the upstream event `cerberus-pose`; another head's (`head`) is ignored, all are
  * forwarded. Each frame carries the pose meta with which it was made, and the base's yaw rate from upstream, 0 without
  * one. The wide picture counts as a pinhole camera's that looks straight ahead and sees `wide-fov`; the window
@@ -215,6 +218,7 @@ void attach_pose(const State& state, motion::Pose pose, const vision::WindowGeom
                  GstBuffer* out) {
   pose.pan.position = place.pan;
   pose.tilt.position = place.tilt;
+  if (pose.field_of_view > 0) pose.field_of_view = state.view.geometry().fov();
   CerberusPose meta = to_c(pose);
   if (!state.settings.head.empty()) meta.head = g_intern_string(state.settings.head.c_str());
   cerberus_buffer_set_pose(out, &meta);
@@ -310,6 +314,7 @@ GstFlowReturn make_frame(GstBaseTransform* trans, GstBuffer* in, GstBuffer* out)
     if (const GstFlowReturn flow = wait_for_head(trans, self, in, time); flow != GST_FLOW_OK) return flow;
   state.times.add(time, running_length(GST_BUFFER_DURATION(in), state.view.picture(), trans->segment));
   const motion::Pose pose = self.feed.at(time);
+  state.view.look_through(pose.field_of_view);
   const auto place = state.view.geometry().at(pose.pan.position, pose.tilt.position);
   GST_LOG_OBJECT(trans, "%" GST_TIME_FORMAT ": pan %.3f tilt %.3f, window at %.2f %.2f%s",
                  GST_TIME_ARGS(clock_time(time)), degrees(place.pan), degrees(place.tilt), place.left,

@@ -53,8 +53,18 @@ std::string WindowView::set_angles(const WindowSettings& s) {
                                         radians(s.horizontal_fov));
   if (!geometry.fits())
     return vision::window_misfit(size_of(picture_), s.wide_fov, size_of(window_), s.horizontal_fov);
-  geometry_ = geometry;
+  geometry_ = unzoomed_ = geometry;
+  wide_fov_ = radians(s.wide_fov);
+  zoom_ = 0;
   return {};
+}
+
+void WindowView::look_through(double field_of_view) {
+  if (!(field_of_view > 0)) field_of_view = 0;  // a zoom of which nothing is known, too
+  if (field_of_view == zoom_) return;
+  zoom_ = field_of_view;
+  const vision::WindowGeometry zoomed(wide_fov_, size_of(picture_), size_of(window_), field_of_view);
+  geometry_ = zoom_ > 0 && zoomed.fits() ? zoomed : unzoomed_;
 }
 
 bool WindowView::draw(GstBuffer* picture, const Place& place, bool with_inset, GstBuffer* window) {

@@ -22,6 +22,9 @@ class WindowView {
   // Sets other angles. On an error the old ones stay in force.
   std::string set_angles(const WindowSettings& settings);
 
+  // The window sees so much from now on, as far as the picture reaches (radians over its width; 0: as the settings say).
+  void look_through(double field_of_view);
+
   const GstVideoInfo& picture() const { return picture_; }
   const vision::WindowGeometry& geometry() const { return geometry_; }
   // Returns false if a buffer does not hold the picture of its caps.
@@ -31,7 +34,8 @@ class WindowView {
   void draw_components(GstVideoFrame& picture, GstVideoFrame& window, const Place& place);
 
   GstVideoInfo picture_, window_;
-  vision::WindowGeometry geometry_;
+  vision::WindowGeometry geometry_, unzoomed_;
+  double wide_fov_ = 0, zoom_ = 0;  // radians
   vision::WindowResampler resampler_;
   Inset inset_;
 };

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <tuple>
 
 #include "ptz_rig.h"
 
@@ -136,6 +137,44 @@ GST_START_TEST(a_frame_carries_the_pose_it_was_made_with) {
   fail_unless_equals_uint64(made->valid_from, 40 * GST_MSECOND);
   fail_unless(made->source == CERBERUS_POSE_MEASURED);
   gst_buffer_unref(out);
+}
+GST_END_TEST
+
+// Column x has the value x / 2: the window of 160 columns begins at 80; with half of its tangent at 120, in steps of half a
+// column.
+GST_START_TEST(a_zoom_shows_a_part_of_the_window_and_the_frame_says_so) {
+  Ptz ptz(kLine, true, "GRAY8");
+  GstBuffer* ramp = frame(ptz.in);
+  GstMapInfo map;
+  gst_buffer_map(ramp, &map, GST_MAP_WRITE);
+  const gsize width = GST_VIDEO_INFO_WIDTH(&ptz.in), stride = GST_VIDEO_INFO_PLANE_STRIDE(&ptz.in, 0);
+  for (gsize i = 0; i < map.size; ++i) map.data[i] = static_cast<guint8>(std::min(i % stride, width - 1) / 2);
+  gst_buffer_unmap(ramp, &map);
+  const auto shows = [&](int number, double field_of_view) {
+    CerberusPose p = pose(0);
+    p.field_of_view = field_of_view;
+    if (number > 0) send(ptz.h.get(), p);
+    GstBuffer* next = gst_buffer_copy_deep(ramp);
+    GST_BUFFER_PTS(next) = number * 40 * GST_MSECOND;
+    gst_harness_push(ptz.h.get(), next);
+    GstBuffer* out = gst_harness_pull(ptz.h.get());
+    const double said = cerberus_buffer_peek_pose(out)->field_of_view;
+    const Picture seen(ptz.out, out);
+    return std::tuple(seen.at(0, 0, 60), seen.at(0, kWindowWidth - 1, 60), said);
+  };
+  const double half = 2 * std::atan(40 / 277.128) * 180 / M_PI;
+  const auto is = [](const auto& seen, int first, int last, double said) {
+    const auto& [left, right, degrees] = seen;
+    fail_unless(std::abs(left - first) <= 1 && std::abs(right - last) <= 1, "%d to %d", left, right);
+    fail_unless(std::abs(degrees - said) < 1e-3, "%g", degrees);
+  };
+  is(shows(0, 0), 40, 119, 0);
+  is(shows(1, half), 60, 99, half);
+  is(shows(2, 0), 40, 119, 0);
+  const double usual = 2 * std::atan(80 / 277.128) * 180 / M_PI;
+  is(shows(3, 120), 40, 119, usual);  // wider than the picture
+  is(shows(4, -1), 40, 119, -1);      // a zoom of which nothing is known
+  gst_buffer_unref(ramp);
 }
 GST_END_TEST
 
@@ -277,6 +316,7 @@ static Suite* virtualptz_suite() {
   tcase_add_test(tc, a_moving_pose_is_evaluated_at_the_frames_time);
   tcase_add_test(tc, poses_are_passed_on_and_only_those_of_the_own_head_count);
   tcase_add_test(tc, a_frame_carries_the_pose_it_was_made_with);
+  tcase_add_test(tc, a_zoom_shows_a_part_of_the_window_and_the_frame_says_so);
   tcase_add_test(tc, a_pose_and_regions_of_the_wide_picture_do_not_come_through);
   tcase_add_test(tc, its_base_stands_unless_an_upstream_element_reports_it);
   tcase_add_test(tc, it_says_how_far_it_reaches);
