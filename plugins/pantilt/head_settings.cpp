@@ -69,9 +69,10 @@ const Property<HeadSettings> kProperties[] = {
         "Degrees a second for which the body below the head is asked at most (messages "
         "cerberus-base-request) while a person whom the head follows is near its stops or beyond; 0 = it "
         "is not asked"),
-    property("keep-size", &HeadSettings::keep_size,
-             "The zoom slowly keeps a followed person at a third of the picture's height: of a visca, onvif, "
-             "v4l2, external or simulated head with a zoom-table"),
+    property(
+        "keep-size", &HeadSettings::keep_size,
+        "The zoom slowly keeps a followed person at a third of the picture's height: of a visca, pelco-d "
+        "(feedback), onvif, v4l2, external or simulated head with a zoom-table"),
     property("helper-timeout", &HeadSettings::helper_timeout,
              "Nanoseconds of silence, 1 ms to 10 s, after which the helper process of a real head stops it")
         .read_at_start(),

@@ -26,7 +26,7 @@
  * the name of this head or of any) is executed at once as if the last frame carried it: in the same states and within
  * the same limits, and only while frames with decisions come. A target is followed with frames alone.
  *
- * A head that reports its zoom (`visca`, `onvif`, `v4l2`, `external`) sees what `zoom-table` says, which counts in place
+ * A head that reports its zoom (`visca`, `pelco-d`, `onvif`, `v4l2`, `external`) sees what `zoom-table` says, which counts in place
  * of `horizontal-fov` and is part of its poses (`field-of-view`); `lock-zoom` keeps the zoom instead. With neither a
  * warning says that every angle depends on it. With `keep-size` the zoom of such a head (also of a `simulated` one, which
  * has a zoom where it has a table) slowly keeps a followed person at a third of the picture's height: twice as near within

@@ -42,6 +42,10 @@ START_TEST(drives_are_those_of_the_manual) {
   assert_text(hex(drive(1, 0, 0)), "ff 01 00 00 00 00 01");          // stop
   assert_text(hex(position_query(1, Axis::pan)), "ff 01 00 51 00 00 52");
   assert_text(hex(position_query(2, Axis::tilt)), "ff 02 00 53 00 00 55");
+  assert_text(hex(position_query(1, Axis::zoom)), "ff 01 00 55 00 00 56");
+  assert_text(hex(zoom(1, 0)), "ff 01 00 4f 00 00 50");
+  assert_text(hex(zoom(1, .5)), "ff 01 00 4f 80 00 d0");
+  assert_text(hex(zoom(1, 1.5)), "ff 01 00 4f ff ff 4e");
 }
 END_TEST
 

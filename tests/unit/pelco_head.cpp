@@ -131,6 +131,39 @@ START_TEST(positions_are_asked_for_and_a_head_at_its_limit_stops) {
 }
 END_TEST
 
+START_TEST(the_zoom_of_a_head_with_feedback_is_asked_for_and_ordered_and_a_stop_takes_the_order_back) {
+  Line line;
+  PelcoHead head(options_for(line, true));
+  ck_assert(head.abilities().zoom && !PelcoHead(options_for(line)).abilities().zoom);
+  head.open({}, 0s);
+  Time now = 0s;
+  line.answer({0xff, 1, 0, 0x59, 0, 0, 0x5a});
+  head.tick(now);
+  // The first frame of this command within two seconds.
+  const auto sends = [&](std::uint8_t command) {
+    for (const Time end = now + 2s; now < end;) {
+      now += 50ms;
+      head.tick(now);
+      if (line.silent()) continue;
+      if (const auto frame = line.frame(); frame[3] == command) return std::optional(frame);
+    }
+    return std::optional<std::array<std::uint8_t, 7>>();
+  };
+  ck_assert(sends(0x55));
+  line.answer({0xff, 1, 0, 0x5d, 0x80, 0x00, 0xde});
+  head.tick(now);
+  ck_assert_double_eq_tol(head.take_zoom().value_or(-1), .5, 1e-4);
+  ck_assert(!head.take_zoom());
+  head.zoom(.25, now);
+  const auto order = sends(0x4f);
+  ck_assert(order && (*order)[4] == 0x40 && (*order)[5] == 0);
+  ck_assert(!sends(0x4f));  // once
+  head.zoom(.75, now);
+  head.stop(now);
+  ck_assert(!sends(0x4f));
+}
+END_TEST
+
 START_TEST(an_axis_that_ceases_to_report_makes_no_pose_and_stops_the_head) {
   constexpr std::array<std::uint8_t, 7> kPanAnswer{0xff, 1, 0, 0x59, 0x0b, 0xb8, 0x1d};
   constexpr std::array<std::uint8_t, 7> kTiltAnswer{0xff, 1, 0, 0x5b, 0, 0, 0x5c};
@@ -216,6 +249,7 @@ int main() {
       "pelco_head",
       {speeds_become_steps_and_are_sent_again, a_stop_is_sent_five_times,
        positions_are_asked_for_and_a_head_at_its_limit_stops,
+       the_zoom_of_a_head_with_feedback_is_asked_for_and_ordered_and_a_stop_takes_the_order_back,
        an_axis_that_ceases_to_report_makes_no_pose_and_stops_the_head,
        a_head_that_returns_and_reports_no_more_is_a_fault,
        a_head_with_feedback_that_never_reports_is_a_fault_with_what_to_check, what_cannot_be_is_named});

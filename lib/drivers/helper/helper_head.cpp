@@ -54,9 +54,10 @@ std::string settings_fault(const std::string& driver, const HeadSetup& setup) {
   if (!external && setup.device.empty()) return "the driver " + driver + " needs a device (device=)";
   if (setup.lock_zoom && driver != "visca" && driver != "v4l2" && driver != "onvif")
     return "the driver " + driver + " keeps no zoom: lock-zoom is for visca, v4l2 and onvif";
-  if (setup.moves_zoom && !external && driver != "visca" && driver != "v4l2" && driver != "onvif")
+  if (setup.moves_zoom && !external && driver != "visca" && driver != "pelco-d" && driver != "v4l2" &&
+      driver != "onvif")
     return "the driver " + driver +
-           " moves no zoom: keep-size is for visca, v4l2, onvif, external and simulated";
+           " moves no zoom: keep-size is for visca, pelco-d, v4l2, onvif, external and simulated";
   for (const std::string& setting : {setup.device, setup.options})
     if (std::string wrong = refuse_password(setting); !wrong.empty()) return wrong;
   if (setup.helper_timeout < std::chrono::milliseconds(1) || setup.helper_timeout > std::chrono::seconds(10))

@@ -13,6 +13,8 @@ constexpr std::uint8_t kSync = 0xff;
 constexpr std::uint8_t kRight = 0x02, kLeft = 0x04, kUp = 0x08, kDown = 0x10;
 constexpr std::uint8_t kGoToPreset = 0x07;
 constexpr std::uint8_t kQueryPan = 0x51, kQueryTilt = 0x53, kPan = 0x59, kTilt = 0x5b;
+constexpr std::uint8_t kSetZoom = 0x4f, kQueryZoom = 0x55, kZoom = 0x5d;
+constexpr double kZoomRange = 0xffff;
 
 std::uint8_t sum_of(const Frame& frame) {
   return static_cast<std::uint8_t>(std::accumulate(frame.begin() + 1, frame.end() - 1, 0));
@@ -40,7 +42,16 @@ Frame drive(int address, int pan, int tilt) {
 }
 
 Frame position_query(int address, Axis axis) {
-  return finished(address, axis == Axis::pan ? kQueryPan : kQueryTilt, 0, 0);
+  return finished(address,
+                  axis == Axis::pan    ? kQueryPan
+                  : axis == Axis::tilt ? kQueryTilt
+                                       : kQueryZoom,
+                  0, 0);
+}
+
+Frame zoom(int address, double position) {
+  const auto units = static_cast<int>(std::lround(std::clamp(position, 0.0, 1.0) * kZoomRange));
+  return finished(address, kSetZoom, units >> 8, units & 0xff);
 }
 
 Frame go_to_preset(int address, int preset) {
@@ -52,16 +63,19 @@ std::optional<Position> Answers::take() {
   while (bytes_.size() >= 7) {
     Frame frame;
     std::copy_n(bytes_.begin(), 7, frame.begin());
-    const bool answer = frame[0] == kSync && frame[2] == 0 && (frame[3] == kPan || frame[3] == kTilt);
+    const bool is_zoom = frame[3] == kZoom;
+    const bool answer =
+        frame[0] == kSync && frame[2] == 0 && (frame[3] == kPan || frame[3] == kTilt || is_zoom);
     const int hundredths = frame[4] << 8 | frame[5];
-    if (!answer || frame.back() != sum_of(frame) || hundredths >= 36000) {
+    if (!answer || frame.back() != sum_of(frame) || (hundredths >= 36000 && !is_zoom)) {
       bytes_.erase(bytes_.begin());
       continue;
     }
     bytes_.erase(bytes_.begin(), bytes_.begin() + 7);
+    if (is_zoom) return Position{frame[1], Axis::zoom, 0, hundredths / kZoomRange};
     const double degrees = hundredths < 18000 ? hundredths / 100.0 : hundredths / 100.0 - 360;
-    if (frame[3] == kPan) return Position{frame[1], Axis::pan, degrees};
-    return Position{frame[1], Axis::tilt, std::clamp(-degrees, -90.0, 90.0)};
+    if (frame[3] == kPan) return Position{frame[1], Axis::pan, degrees, 0};
+    return Position{frame[1], Axis::tilt, std::clamp(-degrees, -90.0, 90.0), 0};
   }
   return std::nullopt;
 }

@@ -47,6 +47,7 @@ void PelcoHead::on_connected(Time now) {
   measured_ = {kUnknown, kUnknown};  // it may have moved meanwhile
   connected_at_ = now;
   new_pose_ = false;
+  zoom_unanswered_ = 0;
   home_at_.reset();
   stop(now);  // it stands until the next move
 }
@@ -56,7 +57,8 @@ HeadAbilities PelcoHead::abilities() const {
           .velocity = true,
           .feedback = options_.feedback,
           .rate = kRate,
-          .home = !options_.feedback && options_.home_preset > 0};
+          .home = !options_.feedback && options_.home_preset > 0,
+          .zoom = options_.feedback};
 }
 
 PanTilt PelcoHead::speeds_of(int pan, int tilt) const {
@@ -95,6 +97,7 @@ void PelcoHead::limit(const motion::Limits& limits, Time now) {
 void PelcoHead::stop(Time now) noexcept {
   pan_ = tilt_ = 0;
   home_at_.reset();
+  zoom_order_.reset();
   stops_owed_ = kStops - 1;
   sent_ = now;
   send(pelco::drive(options_.address, 0, 0));
@@ -124,12 +127,31 @@ void PelcoHead::read(Time now) {
   }
   while (const auto position = answers_.take()) {
     if (position->address != options_.address) continue;
+    if (position->axis == pelco::Axis::zoom) {
+      zoom_ = position->zoom;
+      zoom_unanswered_ = 0;
+      continue;
+    }
     const bool is_pan = position->axis == pelco::Axis::pan;
     (is_pan ? measured_.pan : measured_.tilt) = radians(position->degrees);
     (is_pan ? pan_at_ : tilt_at_) = now;
     (is_pan ? pan_reports_ : tilt_reports_) = true;
     new_pose_ = pan_at_ && tilt_at_ && now - std::min(*pan_at_, *tilt_at_) <= kPairAge;
   }
+}
+
+// Sends what is due of the zoom, in place of a question for a position. Returns whether something was.
+bool PelcoHead::zoom_turn(Time now) {
+  if (zoom_order_) {
+    send(pelco::zoom(options_.address, *std::exchange(zoom_order_, std::nullopt)));
+    return true;
+  }
+  if (!pan_reports_ && !tilt_reports_) return false;  // it answers nothing yet
+  if (now - zoom_asked_ < (zoom_unanswered_ < kZoomInquiries ? kZoomPeriod : kZoomSeldom)) return false;
+  zoom_asked_ = now;
+  ++zoom_unanswered_;
+  send(pelco::position_query(options_.address, pelco::Axis::zoom));
+  return true;
 }
 
 Time PelcoHead::tick(Time now) {
@@ -152,6 +174,7 @@ Time PelcoHead::tick(Time now) {
     send(pelco::drive(options_.address, pan_, tilt_));
   } else if (options_.feedback && now - asked_ >= kRepeat / 2) {
     asked_ = now;
+    if (zoom_turn(now)) return now + kStopAgain;
     send(pelco::position_query(options_.address, next_query_));
     next_query_ = next_query_ == pelco::Axis::pan ? pelco::Axis::tilt : pelco::Axis::pan;
   }

@@ -45,6 +45,8 @@ class PelcoHead final : public StreamDevice {
   std::optional<HomedLine> take_homed(Time now) override;
   Time tick(Time now) override;
   std::optional<PoseLine> take_pose(Time now) override;
+  std::optional<double> take_zoom() override { return std::exchange(zoom_, std::nullopt); }
+  void zoom(double position, Time) override { zoom_order_ = position; }
 
   static constexpr std::chrono::milliseconds kRepeat{200};
   static constexpr std::chrono::milliseconds kStopAgain{50};  // a frame takes 29 ms at 2400 baud
@@ -54,6 +56,10 @@ class PelcoHead final : public StreamDevice {
   // Older positions of the two axes make no pose. derived: each is queried every kRepeat, and one answer may be lost
   static constexpr std::chrono::milliseconds kPairAge{400};
   static constexpr double kRate = 10;  // commands a second
+  // The zoom of a head that reports positions is asked for, too.
+  static constexpr std::chrono::milliseconds kZoomPeriod{500};
+  static constexpr int kZoomInquiries = 3;  // without an answer, after which it is asked for seldom
+  static constexpr std::chrono::milliseconds kZoomSeldom{10000};
 
  private:
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -62,6 +68,7 @@ class PelcoHead final : public StreamDevice {
   motion::PanTilt speeds_of(int pan, int tilt) const;
   void drive(int pan, int tilt, Time now);
   void read(Time now);
+  bool zoom_turn(Time now);
 
   PelcoOptions options_;
   pelco::Answers answers_;
@@ -75,6 +82,9 @@ class PelcoHead final : public StreamDevice {
   bool pan_reports_ = false, tilt_reports_ = false;  // on any connection
   Time connected_at_{};
   bool new_pose_ = false;
+  std::optional<double> zoom_, zoom_order_;  // read, and not taken yet; not sent yet
+  Time zoom_asked_{};
+  int zoom_unanswered_ = 0;
 };
 
 }  // namespace cerberus::drivers
