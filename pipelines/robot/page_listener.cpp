@@ -53,6 +53,8 @@ bool PageListener::open(SoupServer* server, GSocketAddress* address, GTlsCertifi
   server_ = server;
   if (certificate != nullptr) certificate_ = G_TLS_CERTIFICATE(g_object_ref(certificate));
   service_ = g_socket_service_new();
+  // What comes at once waits for accept(), else for seconds until TCP tries again.
+  g_socket_listener_set_backlog(G_SOCKET_LISTENER(service_), static_cast<int>(parameters_.most));
   g_autoptr(GError) fault = nullptr;
   if (!g_socket_listener_add_address(G_SOCKET_LISTENER(service_), address, G_SOCKET_TYPE_STREAM,
                                      G_SOCKET_PROTOCOL_TCP, nullptr, nullptr, &fault)) {
