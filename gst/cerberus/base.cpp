@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <cerberus/base.h>
 
+#include <cmath>
+#include <limits>
+
 #include "cerberus/private/define.hpp"
 
 namespace {
 
 using Type = cerberus::Field::Type;
-constexpr cerberus::Field kFields[] = {
-    {"yaw-rate", Type::angle, offsetof(CerberusBase, yaw_rate)},
-    {"running-time", Type::time, offsetof(CerberusBase, valid_from)},
-};
+constexpr cerberus::Field kTurn[] = {{"yaw-rate", Type::angle, offsetof(CerberusBase, yaw_rate)}};
+constexpr cerberus::Field kDrive[] = {{"speed", Type::known, offsetof(CerberusBase, speed)}};
+constexpr cerberus::Field kTime[] = {{"running-time", Type::time, offsetof(CerberusBase, valid_from)}};
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 void unknown(CerberusBase& base) {
   base.valid_from = GST_CLOCK_TIME_NONE;
+  base.speed = kUnknown;
 }
 
 CerberusBase sane(CerberusBase base) {
@@ -21,12 +25,20 @@ CerberusBase sane(CerberusBase base) {
 }
 
 void write(GstStructure* to, const CerberusBase& base) {
-  cerberus::write_fields(to, kFields, &base);
+  if (std::isfinite(base.yaw_rate)) cerberus::write_fields(to, kTurn, &base);
+  cerberus::write_fields(to, kDrive, &base);
+  cerberus::write_fields(to, kTime, &base);
 }
 
 bool read(const GstStructure* from, CerberusBase& base) {
   base.source = CERBERUS_BASE_REPORTED;
-  return cerberus::read_fields(from, kFields, &base) && GST_CLOCK_TIME_IS_VALID(base.valid_from);
+  base.yaw_rate = base.speed = kUnknown;
+  const bool turns = cerberus::read_fields(from, kTurn, &base);
+  const bool drives = cerberus::read_fields(from, kDrive, &base) && std::isfinite(base.speed);
+  if (!turns) base.yaw_rate = kUnknown;
+  if (!drives) base.speed = kUnknown;
+  return (turns || drives) && cerberus::read_fields(from, kTime, &base) &&
+         GST_CLOCK_TIME_IS_VALID(base.valid_from);
 }
 
 }  // namespace

@@ -10,9 +10,10 @@ G_BEGIN_DECLS
  * CERBERUS_EVENT_BASE:
  *
  * Name of the custom upstream event by which an application (or a simulator) reports how fast the body that carries
- * head and sensors turns. It holds from its running time until the next one's, for %CERBERUS_BASE_LIFETIME at most, and
- * has priority over the estimate of `cameramotion`. Send it some times a second, also while nothing changes. Fields:
- * `yaw-rate` (double, degrees a second, positive to the right), `running-time` (uint64, nanoseconds).
+ * head and sensors turns and drives. It holds from its running time until the next one's, for %CERBERUS_BASE_LIFETIME at
+ * most, and has priority over the estimate of `cameramotion`. Send it some times a second, also while nothing changes.
+ * Fields: `yaw-rate` (double, degrees a second, positive to the right), `speed` (double, metres a second, positive
+ * ahead), `running-time` (uint64, nanoseconds). One of the first two may be missing: it is not known.
  */
 #define CERBERUS_EVENT_BASE "cerberus-base"
 
@@ -34,9 +35,11 @@ typedef enum { CERBERUS_BASE_ESTIMATED, CERBERUS_BASE_REPORTED } CerberusBaseSou
 
 /**
  * CerberusBase:
- * @yaw_rate: how fast the body turned when the frame was taken, degrees a second, positive to the right
+ * @yaw_rate: how fast the body turned when the frame was taken, degrees a second, positive to the right; in events NaN
+ *   where it is not known
  * @source: where @yaw_rate comes from
  * @valid_from: in events the running time from which it holds; on buffers %GST_CLOCK_TIME_NONE
+ * @speed: in events how fast the body drives, metres a second, positive ahead, NaN where it is not known; on buffers NaN
  *
  * How the body that carries head and sensors moves. An unknown motion is not attached.
  */
@@ -44,9 +47,10 @@ typedef struct _CerberusBase {
   gdouble yaw_rate;
   CerberusBaseSource source;
   GstClockTime valid_from;
+  gdouble speed;
 
   /*< private >*/
-  gpointer _cerberus_reserved[GST_PADDING];
+  gpointer _cerberus_reserved[GST_PADDING - 1];
 } CerberusBase;
 
 #define CERBERUS_TYPE_BASE (cerberus_base_get_type())

@@ -63,7 +63,7 @@ typedef enum {
  * @n_sensors: number of PIR sensors
  * @sensors: their readings: 0 nothing, 1 motion, 2 invalid
  * @bearings: direction of each sensor, degrees, positive to the right of straight ahead; 0 until it is known
- * @doubtful: one bit a sensor: its reading was not counted because the robot itself turned
+ * @doubtful: one bit a sensor: its reading was not counted, as the robot's own motion may have caused it
  * @decided: running time up to which the sensors' readings were used: of two decisions the later one counts;
  *     %GST_CLOCK_TIME_NONE if it is not known
  * @head: name of the head that a %CERBERUS_EVENT_FUSION is for; interned, not to be freed; %NULL: any

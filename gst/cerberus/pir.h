@@ -103,7 +103,7 @@ gsize cerberus_pir_info_buffer_size(const CerberusPirInfo* info);
  * @n_sensors: number of sensors
  * @sensors: their readings: 0 nothing, 1 motion, 2 invalid
  * @bearings: direction of each sensor, degrees, positive to the right of straight ahead
- * @doubtful: one bit a sensor: it detects while the robot itself turns
+ * @doubtful: one bit a sensor: the robot's own motion may have caused its detection
  *
  * The readings of all sensors of a stream.
  */

@@ -87,6 +87,7 @@ Decisions::Outcome Decisions::decide(const Frame& frame, Time at) {
                                  .sensors = std::span(snapshot.sensors).first(snapshot.count),
                                  .pan = sensing::radians(snapshot.pan_degrees),
                                  .base_yaw_rate = sensing::radians(snapshot.base_degrees),
+                                 .base_speed = snapshot.base_speed,
                                  .lens = snapshot.lens}),
                   snapshot, sensor_time_};
   Decision& decision = outcome.decision;

@@ -8,14 +8,19 @@
 #include <utility>
 
 #include "fusion/follower.h"
-#include "sensing/pir_model.h"
+#include "sensing/own_motion.h"
 
 namespace cerberus::fusion {
+
+using sensing::Arc;
+using sensing::PulseDoubt;
 
 namespace {
 
 // Tolerance at the edges of a sweep: heads stop a little before them (dead band, steps).
 constexpr double kEdge = sensing::radians(2);
+// The field of a sensor of whose direction nothing is known.
+constexpr Arc kAround{-std::numbers::pi, 2 * std::numbers::pi};
 
 SensorBits bit(int sensor) {
   return static_cast<SensorBits>(1U << sensor);
@@ -63,10 +68,8 @@ struct Fuser::State {
     Follower follower;  // the camera's part
 
     // Sensors.
-    SensorBits ones = 0, fired = 0, invalid = 0, doubtful = 0;
-    SensorBits tainted = 0;  // read 1 while the base turned
-    bool turning = false;
-    Time turned = kLongAgo;
+    SensorBits fired = 0, invalid = 0, doubtful = 0;
+    std::array<PulseDoubt, kMaxSensors> doubts;
     std::array<int, kMaxSensors> order{};  // the higher, the later it fired
     int fire_count = 0;
     Time detected{};  // last time camera or sensors found something; before that the first frame's
@@ -111,21 +114,20 @@ void Fuser::State::read_sensors(const Input& input) {
     if (value > 1) m.invalid |= bit(i);
   }
 
-  // A turning base triggers its own sensors, and a module holds its output for a while after the turn.
-  const bool turning = std::abs(input.base_yaw_rate) > sensing::kDoubtfulTurn;  // false for NaN
-  if (turning || m.turning) m.tainted |= ones;  // also detections between two frames
-  if (m.turning && !turning) m.turned = input.sensor_time;
-  m.turning = turning;
-  if (!turning && !within(sensing::kDoubtLinger, m.turned, input.sensor_time)) m.tainted = 0;
-  m.tainted &= ones;
-  m.doubtful = m.tainted;
+  m.doubtful = 0;
+  for (int i = 0; i < count; ++i) {
+    const Arc field = i < geometry.count() ? geometry.sector(i) : kAround;
+    const double passing = passing_rate(field, {input.base_yaw_rate, input.base_speed});
+    PulseDoubt& doubt = m.doubts[static_cast<unsigned>(i)];
+    doubt.update(input.sensor_time, (ones & bit(i)) != 0, passing > sensing::kDoubtfulTurn);
+    if (doubt.doubtful()) m.doubtful |= bit(i);
+  }
 
   const auto fired = static_cast<SensorBits>(ones & ~m.doubtful);
   const auto rising = static_cast<SensorBits>(fired & ~m.fired);
   if (rising != 0) ++m.fire_count;
   for (int i = 0; i < known; ++i)
     if (rising >> i & 1) m.order[static_cast<unsigned>(i)] = m.fire_count;
-  m.ones = ones;
   m.fired = fired;
 }
 
@@ -160,12 +162,12 @@ Decision Fuser::State::complete(const Input& input, Decision next) {
     next.rule_name = name;
     return next;
   };
+  const double lens = input.lens > 0 && input.lens < std::numbers::pi ? input.lens : options.lens;
   if (next.camera_found) {
     forget_places();
     next.target = m.follower.target();
     return say(next.target != 0 ? Action::track : Action::hold, 1, "camera");
   }
-  const double lens = input.lens > 0 && input.lens < std::numbers::pi ? input.lens : options.lens;
   if (std::exchange(m.lens, lens) != lens && m.places.count > 0) m.outdated = true;
   if ((m.fired != 0 && m.fired != m.asked) || m.outdated) {
     const bool same_place = m.places.count > 0;
@@ -289,8 +291,8 @@ void Fuser::set_options(const FuserOptions& options) {
   const FuserOptions& now = state_->options;
   if (now.rules != old.rules) state_->forget_places();
   // A search continues, with new places.
-  if ((now.lens != old.lens || now.limits != old.limits) && state_->memory.places.count > 0)
-    state_->memory.outdated = true;
+  if (now.lens == old.lens && now.limits == old.limits) return;
+  if (state_->memory.places.count > 0) state_->memory.outdated = true;
 }
 
 const FuserOptions& Fuser::options() const {

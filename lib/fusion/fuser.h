@@ -54,6 +54,7 @@ struct Input {
   std::span<const std::uint8_t> sensors;  // 0, 1, 2 = invalid (as in the PIR caps); others count as invalid
   double pan = kUnknown;                  // radians
   double base_yaw_rate = kUnknown;        // radians a second
+  double base_speed = kUnknown;           // metres a second, straight ahead
   double lens = 0;  // horizontal field of view, radians, of a zoom; 0: as the options say
 };
 
@@ -61,7 +62,7 @@ struct Decision {
   Action action = Action::hold;
   int rule = 0;  // number of the table's rule; complete: 1 (camera) and 7 (zero), 0 for the rest
   std::string_view
-      rule_name;  // of the table's rule; complete: "camera", "overlap", "sector", "return", "zero";
+      rule_name;  // of the table's rule; complete: "camera", "overlap", "sector", "doubt", "return", "zero";
   // "stopped", "return": the reason for deferring rule 7. Valid until the next change of rules.
   std::uint32_t target = 0;  // id of the track to follow; 0: none
   Interval sector{
@@ -71,9 +72,10 @@ struct Decision {
   double pan = kUnknown;  // as used
   bool limited = false;   // the wanted place lies (partly) beyond the pan limits
   bool camera_found = false;
-  SensorBits fired = 0;     // sensors that detect and count
-  SensorBits doubtful = 0;  // read 1 while the base turned (or just after): not counted
-  SensorBits invalid = 0;   // read 2: not counted
+  SensorBits fired = 0;  // sensors that detect and count
+  SensorBits doubtful =
+      0;  // read 1 perhaps because of the base's own motion (sensing/own_motion.h): not counted
+  SensorBits invalid = 0;  // read 2: not counted
   bool changed =
       false;  // rule, action, target, sector, limited, camera_found, or a sensor differs from last frame
 };

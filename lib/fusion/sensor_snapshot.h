@@ -17,6 +17,7 @@ struct SensorSnapshot {
   double pan_degrees = kUnknown;
   double lens = 0;  // horizontal field of view, radians, as the head's zoom says; 0: it does not
   double base_degrees = kUnknown;    // a second
+  double base_speed = kUnknown;      // metres a second, straight ahead
   bool pan_on_frame = false;         // the frame carried the pose
   bool base_received = false;        // the rate came as an event, which the PIR sources have received too
   bool geometry_known = true;        // the geometry of all sensors is known, none is assumed

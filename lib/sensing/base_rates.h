@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The base's yaw rate as events report it: each value holds until the next one's time, and for kBaseLifetime at most.
+// The base's yaw rate, or its speed, as events report it: each value holds until the next one's time, and for
+// kBaseLifetime at most.
 // Not thread-safe.
 #pragma once
 
 #include <optional>
 
-#include "sensing/pir_model.h"
+#include "sensing/own_motion.h"
 #include "sensing/timeline.h"
 
 namespace cerberus::sensing {
@@ -14,8 +15,8 @@ class BaseRates {
  public:
   using Time = std::chrono::nanoseconds;
 
-  void add(Time from, double degrees_a_second) { rates_.insert(from, degrees_a_second); }
-  // Degrees a second; nothing: no event was received, or the last one is too old.
+  void add(Time from, double rate) { rates_.insert(from, rate); }
+  // Nothing: no event was received, or the last one is too old.
   std::optional<double> at(Time time) const {
     const auto* rate = rates_.entry_at(time);
     if (!rate || time - rate->time >= kBaseLifetime) return std::nullopt;

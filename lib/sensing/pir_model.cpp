@@ -86,7 +86,8 @@ void PirModel::start(Time now, bool level) {
   warming_ = warm_until_ > now;
   presence_ = Presence::invalid;
   fault_ = PirFault::none;
-  turning_ = doubtful_ = false;
+  moves_ = false;
+  doubt_ = {};
   rise_count_ = 0;
   line_ = level != options_.active_low;
   if (line_) {
@@ -122,13 +123,11 @@ Time PirModel::poll(Time now) {
   return deadline();
 }
 
-void PirModel::base(Time time, double yaw_rate) {
+void PirModel::base(Time time, double passing) {
   if (!started_) return;
   advance(time);
-  const bool turning = std::abs(yaw_rate) > kDoubtfulTurn;  // false for NaN
-  if (turning_ && !turning) calm_since_ = now_;
-  turning_ = turning;
-  turning_until_ = later(now_, kBaseLifetime);
+  moves_ = std::abs(passing) > kDoubtfulTurn;  // false for NaN
+  moves_until_ = later(now_, kBaseLifetime);
   settle(now_);
 }
 
@@ -184,8 +183,8 @@ Time PirModel::deadline() const {
      later(active_since_, options_.stuck_after));
   at(fault_ == PirFault::stuck_on && !line_, later(last_fall_, options_.debounce));
   at(fault_ == PirFault::chattering, calm_time());
-  at(turning_, turning_until_);
-  at(doubtful_ && !turning_, later(calm_since_, kDoubtLinger));
+  at(moves_, moves_until_);
+  at(true, doubt_.due());
   return due;
 }
 
@@ -214,11 +213,8 @@ void PirModel::settle(Time now) {
       now >= later(active_since_, options_.stuck_after))
     fault_ = PirFault::stuck_on;
 
-  if (turning_ && now >= turning_until_) {
-    turning_ = false;
-    calm_since_ = turning_until_;
-  }
-  doubtful_ = detecting_ && (turning_ || (doubtful_ && now < later(calm_since_, kDoubtLinger)));
+  if (moves_ && now >= moves_until_) moves_ = false;
+  doubt_.update(now, detecting_, moves_);
 
   const Presence old_presence = presence_;
   presence_ = warming_ || fault_ != PirFault::none ? Presence::invalid

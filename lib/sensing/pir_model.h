@@ -22,11 +22,9 @@
 #include <string_view>
 
 #include "sensing/angles.h"
+#include "sensing/own_motion.h"
 
 namespace cerberus::sensing {
-
-using Time = std::chrono::nanoseconds;
-constexpr Time kNever = Time::max();
 
 enum class Presence : std::uint8_t { none = 0, detected = 1, invalid = 2 };
 enum class PirFault : std::uint8_t { none, stuck_on, chattering };
@@ -89,12 +87,11 @@ class PirModel {
   // called late.
   Time changed() const { return changed_; }
   PirFault fault() const { return fault_; }
-  // Returns true for a detection that began or lasted while the base turned faster than kDoubtfulTurn (see base()),
-  // until it ends or the base has been slower for kDoubtLinger.
-  bool doubtful() const { return doubtful_; }
-  // Sets the base's yaw rate, radians a second, from `time` on, for kBaseLifetime or until the next call (NaN: unknown,
-  // taken as 0).
-  void base(Time time, double yaw_rate);
+  // Returns true for a detection that the body's own motion may have caused or may hold (PulseDoubt).
+  bool doubtful() const { return doubt_.doubtful(); }
+  // Sets the rate at which standing things pass the sensor (passing_rate()) from `time` on, for kBaseLifetime or until
+  // the next call (NaN: unknown, taken as 0).
+  void base(Time time, double passing);
 
   const PirOptions& options() const { return options_; }
 
@@ -121,18 +118,11 @@ class PirModel {
   Time hold_until_{}, blocked_until_{}, warm_until_{};
   Presence presence_ = Presence::invalid;
   PirFault fault_ = PirFault::none;
-  bool turning_ = false, doubtful_ = false;
-  Time turning_until_{}, calm_since_{};
+  bool moves_ = false;  // the body
+  Time moves_until_{};
+  PulseDoubt doubt_;
   std::array<Time, kRises> rises_{};
   unsigned rise_count_ = 0;  // of all rises since start; the last kRises of them are kept
 };
-
-// A base that turns faster than this triggers its own PIR sensors: 5 degrees a second, an assumption.
-constexpr double kDoubtfulTurn = radians(5);
-// A reported yaw rate expires after this time. A robot reports it many times a second; after a second without a report
-// the source has failed, and its last value must not suppress detections for ever.
-constexpr Time kBaseLifetime = std::chrono::seconds(1);
-// A module holds its output for some seconds after the turn that triggered it.
-constexpr Time kDoubtLinger = std::chrono::seconds(3);
 
 }  // namespace cerberus::sensing

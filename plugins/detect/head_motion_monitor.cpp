@@ -75,7 +75,8 @@ void HeadMotionMonitor::hear(GstEvent* event, const std::string& head) {
   const std::lock_guard guard(lock_);
   if (counts)
     poses_.insert(time_of(pose->valid_from), *pose);
-  else if (g_autoptr(CerberusBase) base = cerberus_event_parse_base(event))
+  else if (g_autoptr(CerberusBase) base = cerberus_event_parse_base(event);
+           base && std::isfinite(base->yaw_rate))
     told_base_.add(time_of(base->valid_from), base->yaw_rate);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "inputs.hpp"
 
+#include <cmath>
+
 #include "pir_pad.hpp"
 #include "shared/camera_mount.hpp"
 #include "shared/clock_times.hpp"
@@ -28,7 +30,8 @@ void Inputs::listen(Time sensor_time, Time frame_time, const std::string& head, 
   const auto* pose = poses_.entry_at(sensor_time);
   if (pose && is_named(pose->value, head) && (pose->time > frame_time || !snapshot.pan_on_frame))
     read_pose(pose->value, sensor_time, snapshot);
-  if (const auto rate = base_.at(sensor_time)) snapshot.base_degrees = *rate;
+  if (const auto rate = base_rates_.at(sensor_time)) snapshot.base_degrees = *rate;
+  snapshot.base_speed = base_speeds_.at(sensor_time).value_or(fusion::kUnknown);
 }
 
 SensorSnapshot Inputs::at(Time time, Time sensor_time, const std::string& head, bool by_event,
@@ -49,14 +52,16 @@ SensorSnapshot Inputs::at(Time time, Time sensor_time, const std::string& head, 
     if (pose && !is_named(*pose, head)) pose = nullptr;
   }
   if (pose) read_pose(*pose, taken_, snapshot);
-  if (const auto rate = base_.at(time)) {
+  if (const auto rate = base_rates_.at(time)) {
     snapshot.base_degrees = *rate;
     snapshot.base_received = true;
   } else if (seen) {
     snapshot.base_degrees = seen->yaw_rate;
   }
+  snapshot.base_speed = base_speeds_.at(time).value_or(fusion::kUnknown);
   poses_.forget_before(taken_);
-  base_.forget_before(time);
+  base_rates_.forget_before(time);
+  base_speeds_.forget_before(time);
   return snapshot;
 }
 
@@ -71,9 +76,10 @@ void Inputs::add_other_head(const CerberusPose& pose) {
   other_head_ = pose.head;
 }
 
-void Inputs::add_base(double degrees_a_second, Time from) {
+void Inputs::add_base(double degrees_a_second, double speed, Time from) {
   const std::lock_guard guard(lock_);
-  base_.add(from, degrees_a_second);
+  if (std::isfinite(degrees_a_second)) base_rates_.add(from, degrees_a_second);
+  if (std::isfinite(speed)) base_speeds_.add(from, speed);
 }
 
 GstPad* Inputs::add_pad(const char* name, GstPadTemplate* pad_template) {
@@ -105,7 +111,8 @@ void Inputs::forget() {
   const std::lock_guard guard(lock_);
   for (fusion::SensorSource* source : sources_) static_cast<PirPad*>(source)->reset();
   poses_.clear();
-  base_.clear();
+  base_rates_.clear();
+  base_speeds_.clear();
   other_head_ = nullptr;
   SensorInputs::forget();
 }

@@ -36,7 +36,7 @@ class Inputs : public fusion::SensorInputs {
   // ---- upstream events
   void add_pose(const CerberusPose& pose);
   void add_other_head(const CerberusPose& pose);  // of another head than the one that counts
-  void add_base(double degrees_a_second, Time from);
+  void add_base(double degrees_a_second, double speed, Time from);  // NaN: not known
 
   // ---- PIR pads (those of pir_pad.hpp), in the order of their numbers
   // A new one with the number in `name`, or the next free one; nullptr when it is taken, or 16 or more. Floating.
@@ -48,7 +48,7 @@ class Inputs : public fusion::SensorInputs {
 
  private:
   sensing::Timeline<CerberusPose> poses_;
-  sensing::BaseRates base_;
+  sensing::BaseRates base_rates_, base_speeds_;
   const char* other_head_ = nullptr;
   Time taken_{};  // of the picture on the last frame
 };

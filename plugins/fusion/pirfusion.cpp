@@ -36,9 +36,13 @@
  * the time of the decision; where none came for a time after a frame that carried a pose, it is still the frame's.
  * Until the first pose it is unknown, and no turn is decided.
  *
- * Readings that come while the robot turns faster than 5 degrees a second are doubtful and do not count. The rate comes
+ * A sensor whose reading the robot's own motion may cause is doubtful and does not count: one that begins to detect while
+ * standing things pass its field faster than 5 degrees a second, or .3 s after, until it has rested or the robot has
+ * stood for 3 s. What it detected before the motion counts for 3 s more. The rate of turning comes
  * from a `cerberus-base` event or, where none came within a second, from `cameramotion` (#CerberusBase on the
- * buffer), and is then sent to the PIR pads by that event. Both events, and seeks, are passed on to the video and to the PIR
+ * buffer), and is then sent to the PIR pads by that event; that the robot drives comes from such events alone. While
+ * `rules=complete` finds nothing else to do, the head looks into the sectors of doubtful sensors that the camera has not
+ * seen for 4 s (rule `doubt`): those sensors are blind. Both events, and seeks, are passed on to the video and to the PIR
  * pads; where a video can begin at key frames only, accurate seeks keep a recording of sensors in step with it.
  *
  * `rules=paper` is the paper's table and no more: `camera-hold`, `hold-stopped`, `return-delay` and `hysteresis` do not count.
@@ -390,7 +394,7 @@ void listen(Private& priv, GstEvent* event) {
   } else if (pose)
     priv.inputs.add_other_head(*pose);
   else if (g_autoptr(CerberusBase) base = cerberus_event_parse_base(event))
-    priv.inputs.add_base(base->yaw_rate, time_of(base->valid_from));
+    priv.inputs.add_base(base->yaw_rate, base->speed, time_of(base->valid_from));
 }
 
 gboolean src_event(GstPad* pad, GstObject* parent, GstEvent* event) {

@@ -118,6 +118,7 @@
 #include <gst/base/gstbasesink.h>
 #include <gst/video/video.h>
 
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -430,7 +431,7 @@ GstStateChangeReturn cerberus_pan_tilt_sink_change_state(GstElement* element, Gs
 
 gboolean cerberus_pan_tilt_sink_send_event(GstElement* element, GstEvent* event) {
   HeadSession& session = cerberus_pan_tilt_sink_self(element)->priv->session;
-  if (g_autoptr(CerberusBase) base = cerberus_event_parse_base(event))
+  if (g_autoptr(CerberusBase) base = cerberus_event_parse_base(event); base && std::isfinite(base->yaw_rate))
     guarded(element, [&] { session.gyro.robot(time_of(base->valid_from), radians(base->yaw_rate)); });
   return GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class())->send_event(element, event);
 }

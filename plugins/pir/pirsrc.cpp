@@ -30,7 +30,7 @@
  * Lines of all drivers go through the same model: `active-low`, `min-pulse`, `debounce`, `hold`, `block-time`,
  * `warm-up`; `preset` sets them for a module. A program that sends a detection as a pulse without length needs
  * `min-pulse=0`. At every change the element posts an element message `cerberus-pir` (see cerberus_message_parse_pir();
- * its field `doubtful` has a bit for each sensor that detects while the robot itself turns, according to the
+ * its field `doubtful` has a bit for each sensor whose detection the robot's own motion may have caused, according to the
  * upstream event `cerberus-base`). A sensor that is stuck or chatters is named in a warning message. When a driver fails, a last
  * reading is invalid for all sensors; then comes the error.
  *
@@ -61,14 +61,19 @@
 #include <cerberus/private/element.hpp>
 #include "shared/settings_query.hpp"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
+#include <span>
 
 #include "clocks.hpp"
 #include "device_wait.hpp"
 #include "drivers/sensor/sensor_array.h"
 #include "pir_settings.hpp"
 #include "reports.hpp"
+#include "sensing/base_rates.h"
 #include "shared/stamps.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(pirsrc_debug);
@@ -103,6 +108,7 @@ struct Private {
   bool flushing = false;
   std::condition_variable news;  // of these two
   SensorArray sensors;
+  sensing::BaseRates base_rates, base_speeds;  // radians and metres a second, on the sensors' clock
   GstClockTime last = 0;  // time stamp of the last buffer: running time, or of a recording its own
 };
 
@@ -212,6 +218,8 @@ bool open_sensors(CerberusPirSrc* self) {
   priv.info = info;
   priv.live = gst_base_src_is_live(GST_BASE_SRC(self));
   priv.last = 0;
+  priv.base_rates.clear();
+  priv.base_speeds.clear();
   priv.late = !priv.sensors.opened();
   priv.reported = false;
   priv.device.watch(priv.sensors.fd());
@@ -414,19 +422,34 @@ gboolean unlock_stop(GstBaseSrc* base) {
   return TRUE;
 }
 
-gboolean event(GstBaseSrc* base, GstEvent* event) {
-  auto* self = cerberus_pir_src_self(base);
+// Turn and speed may come by different events; lock held.
+void move_base(CerberusPirSrc* self, const CerberusBase& base) {
+  Private& priv = *self->priv;
+  const Time now = priv.live ? sensors_now(self) : time_of(priv.last);
+  if (std::isfinite(base.yaw_rate)) priv.base_rates.add(now, sensing::radians(base.yaw_rate));
+  if (std::isfinite(base.speed)) priv.base_speeds.add(now, base.speed);
+  std::array<double, CERBERUS_PIR_MAX_SENSORS> bearings{};
+  std::ranges::transform(std::span(priv.info.bearings).first(priv.info.sensors), bearings.begin(),
+                         sensing::radians);
+  sensing::Geometry geometry;
+  geometry.set(std::span(bearings).first(priv.info.sensors), sensing::radians(priv.info.field_of_view));
+  priv.sensors.base(now, geometry,
+                    {priv.base_rates.at(now).value_or(0), priv.base_speeds.at(now).value_or(0)});
+  priv.base_rates.forget_before(now);
+  priv.base_speeds.forget_before(now);
+}
+
+gboolean event(GstBaseSrc* source, GstEvent* event) {
+  auto* self = cerberus_pir_src_self(source);
   Private& priv = *self->priv;
   if (is_backwards(event)) return FALSE;
-  if (g_autoptr(CerberusBase) turning = cerberus_event_parse_base(event)) {
+  if (g_autoptr(CerberusBase) base = cerberus_event_parse_base(event)) {
     const std::lock_guard guard(priv.lock);
-    if (priv.running)
-      priv.sensors.base(priv.live ? sensors_now(self) : time_of(priv.last),
-                        sensing::radians(turning->yaw_rate));
+    if (priv.running) move_base(self, *base);
     priv.device.wake();
     return TRUE;
   }
-  return GST_BASE_SRC_CLASS(cerberus_pir_src_parent_class())->event(base, event);
+  return GST_BASE_SRC_CLASS(cerberus_pir_src_parent_class())->event(source, event);
 }
 
 gboolean query(GstBaseSrc* base, GstQuery* query) {

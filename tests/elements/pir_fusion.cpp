@@ -156,6 +156,29 @@ START_TEST(pir_caps_that_are_incomplete_or_absurd_are_refused_in_words) {
 }
 END_TEST
 
+// Turn or speed may be unknown, but not both.
+START_TEST(an_event_of_the_base_says_what_is_known) {
+  const auto read = [](double yaw_rate, double speed) {
+    CerberusBase base;
+    cerberus_base_init(&base);
+    base.yaw_rate = yaw_rate;
+    base.speed = speed;
+    base.valid_from = 7;
+    g_autoptr(GstEvent) event = cerberus_event_new_base(&base);
+    return cerberus_event_parse_base(event);
+  };
+  g_autoptr(CerberusBase) both = read(-12.5, .25);
+  fail_unless(both && both->yaw_rate == -12.5 && both->speed == .25 && both->valid_from == 7);
+  fail_unless(both->source == CERBERUS_BASE_REPORTED);
+  g_autoptr(CerberusBase) turn = read(3, kNan);
+  fail_unless(turn && turn->yaw_rate == 3 && std::isnan(turn->speed));
+  g_autoptr(CerberusBase) drive = read(kNan, -1);
+  fail_unless(drive && std::isnan(drive->yaw_rate) && drive->speed == -1);
+  fail_if(read(kNan, kNan));
+  fail_if(read(kNan, HUGE_VAL));
+}
+END_TEST
+
 START_TEST(a_pir_message_contains_every_reading) {
   CerberusPir pir;
   cerberus_pir_init(&pir);
@@ -336,6 +359,7 @@ static Suite* pir_fusion_suite() {
   tcase_add_test(tc, a_frame_has_one_pose_and_one_decision_and_the_last_counts);
   tcase_add_test(tc, pir_caps_say_what_the_sensors_cover);
   tcase_add_test(tc, pir_caps_that_are_incomplete_or_absurd_are_refused_in_words);
+  tcase_add_test(tc, an_event_of_the_base_says_what_is_known);
   tcase_add_test(tc, a_pir_message_contains_every_reading);
   tcase_add_test(tc, a_fusion_message_tells_the_whole_decision);
   tcase_add_test(tc, an_event_between_frames_tells_the_whole_decision_and_when);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // pirfusion's decisions: its inputs from frames and events, and its outputs. (The rules are tested in
 // pirfusion_rules.cpp, the pads' input in pirfusion_pads.cpp, waiting in pirfusion_waiting.cpp.)
+#include <cmath>
+
 #include "cerberus/private/follow_query.hpp"
 #include "fusion_rig.h"
 
@@ -282,8 +284,9 @@ GST_START_TEST(a_turning_that_the_camera_saw_makes_readings_doubtful) {
   };
   Rig rig;
   GstHarness* pir = rig.add_pir();
-  rig.read(0, {0, 1, 0});
+  rig.read(0, {1, 0, 0});
   fail_unless_equals_int(rig.show(turning(0, 4.9)).doubtful, 0);
+  rig.read(40 * kMs, {1, 1, 0});
   fail_unless_equals_int(rig.show(turning(40 * kMs, 5.1)).doubtful, 0b010);
   fail_unless_equals_int(rig.show(turning(80 * kMs, -20)).doubtful, 0b010);
   fail_unless_equals_int(rig.show(turning(120 * kMs, -20.5)).doubtful, 0b010);
@@ -300,7 +303,42 @@ GST_START_TEST(a_turning_that_the_camera_saw_makes_readings_doubtful) {
   say(rig, base_event(0, 200 * kMs));
   rig.read(1000 * kMs, {1, 0, 0});
   fail_unless_equals_int(rig.show(turning(1199 * kMs, 40)).doubtful, 0);
-  fail_unless_equals_int(rig.show(turning(1200 * kMs, 40)).doubtful, 0b001);
+  rig.read(1200 * kMs, {1, 0, 1});
+  fail_unless_equals_int(rig.show(turning(1200 * kMs, 40)).doubtful, 0b100);
+}
+GST_END_TEST
+
+// The paper's sensors all see to the side. What a straight way does to them is independent of the turn, which the camera
+// sees.
+GST_START_TEST(a_robot_that_drives_makes_readings_doubtful) {
+  Rig rig(true, "lost-after=0");
+  GstHarness* pir = rig.add_pir();
+  rig.read(0, {0, 0, 0});
+  say(rig, drive_event(.1, 0));
+  rig.show(frame_at(0, 0));
+  rig.read(100 * kMs, {1, 0, 0});
+  fail_unless_equals_int(rig.show(frame_at(100 * kMs, 0)).doubtful, 0);
+  say(rig, drive_event(-.5, 200 * kMs));
+  rig.read(300 * kMs, {1, 0, 1});
+  fail_unless_equals_int(rig.show(frame_at(300 * kMs, 0)).doubtful, 0b100);
+  fail_unless_equals_int(rig.show(frame_at(1300 * kMs, 0)).doubtful, 0b100);  // the event has expired
+  GstBuffer* turning = frame_at(1400 * kMs, 0);
+  CerberusBase base;
+  cerberus_base_init(&base);
+  base.yaw_rate = 20;
+  cerberus_buffer_set_base(turning, &base);
+  say(rig, drive_event(0, 1400 * kMs));
+  rig.read(1400 * kMs, {1, 1, 1});
+  fail_unless_equals_int(rig.show(turning).doubtful, 0b110);
+  std::vector<double> speeds, rates;
+  while (GstEvent* event = gst_harness_try_pull_upstream_event(pir)) {
+    g_autoptr(CerberusBase) sent = cerberus_event_parse_base(event);
+    if (sent && std::isfinite(sent->speed)) speeds.push_back(sent->speed);
+    if (sent && std::isfinite(sent->yaw_rate)) rates.push_back(sent->yaw_rate);
+    gst_event_unref(event);
+  }
+  fail_unless(speeds == std::vector<double>({.1, -.5, 0}));
+  fail_unless(rates == std::vector<double>({20}));
 }
 GST_END_TEST
 
@@ -363,6 +401,7 @@ static Suite* pirfusion_suite() {
   tcase_add_test(tc, a_pose_of_another_head_is_forwarded_and_not_used);
   tcase_add_test(tc, readings_while_the_robot_turns_are_doubtful);
   tcase_add_test(tc, a_turning_that_the_camera_saw_makes_readings_doubtful);
+  tcase_add_test(tc, a_robot_that_drives_makes_readings_doubtful);
   tcase_add_test(tc, the_sensors_sources_receive_the_rate_again_while_the_robot_turns);
   tcase_add_test(tc, a_seek_reaches_the_pir_sources_and_the_video_source);
   return s;

@@ -2,6 +2,7 @@
 // What element tests share.
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include <cerberus/cerberus.h>
@@ -55,6 +56,16 @@ inline GstEvent* base_event(double yaw_rate, GstClockTime running_time) {
   CerberusBase base;
   cerberus_base_init(&base);
   base.yaw_rate = yaw_rate;
+  base.valid_from = running_time;
+  return cerberus_event_new_base(&base);
+}
+
+// The base drives straight ahead at `speed` metres a second; its turn is not known.
+inline GstEvent* drive_event(double speed, GstClockTime running_time) {
+  CerberusBase base;
+  cerberus_base_init(&base);
+  base.yaw_rate = std::numeric_limits<double>::quiet_NaN();
+  base.speed = speed;
   base.valid_from = running_time;
   return cerberus_event_new_base(&base);
 }

@@ -86,7 +86,8 @@ START_TEST(what_a_turning_base_trips_is_doubtful_and_does_not_count) {
   ck_assert(decision.action == Action::hold && decision.fired == 0 && decision.doubtful == 0b001);
   stream.yaw_rate = 0;
   stream.sensors = {1, 1, 0};  // the second came between the two frames
-  stream.frame();
+  stream.frames(PulseDoubt::kSettle);
+  ck_assert_int_eq(decision.doubtful, 0b011);
   stream.sensors = {1, 1, 1};  // the third after the turn
   stream.frame();
   ck_assert_int_eq(decision.doubtful, 0b011);
@@ -97,11 +98,38 @@ START_TEST(what_a_turning_base_trips_is_doubtful_and_does_not_count) {
 
   for (const double rate : {-60.0, 4.9, kUnknown}) {
     stream.yaw_rate = rate;
-    stream.frame();
+    stream.frames(2900ms);  // what they detected before may still be held
+    ck_assert_int_eq(decision.doubtful, 0);
+    stream.frames(200ms);
     ck_assert_int_eq(decision.doubtful, rate < -5 ? 0b111 : 0);
     stream.yaw_rate = 0;
     stream.frames(4s);
   }
+}
+END_TEST
+
+// Ahead a field of 60 degrees sees standing things pass half as fast as one to the side.
+START_TEST(a_straight_way_makes_doubt_sensor_by_sensor) {
+  Stream stream;
+  Geometry geometry;
+  ck_assert(geometry.set(std::array{0.0, radians(-90), radians(90)}, radians(60)));
+  stream.fuser.set_geometry(geometry);
+  stream.yaw_rate = 0;
+  const auto doubtful = [&](double speed) {
+    stream.speed = kUnknown;
+    stream.sensors = {0, 0, 0};
+    stream.frames(4s);
+    stream.speed = speed;
+    stream.frame();
+    stream.sensors = {1, 1, 1};
+    return stream.frame().doubtful;
+  };
+  ck_assert_int_eq(doubtful(.17), 0);  // 5 degrees a second are .174 m/s past what is 2 m away
+  ck_assert_int_eq(doubtful(.18), 0b110);
+  ck_assert_int_eq(doubtful(-.18), 0b110);
+  ck_assert_int_eq(doubtful(.34), 0b110);
+  ck_assert_int_eq(doubtful(.36), 0b111);
+  ck_assert_int_eq(doubtful(kUnknown), 0);
 }
 END_TEST
 
@@ -114,8 +142,7 @@ START_TEST(a_doubtful_sensor_that_rests_is_believed_again) {
   stream.frame();
   ck_assert_int_eq(decision.doubtful, 1);
   stream.sensors = {0, 0, 0};
-  stream.frame();
-  stream.frame();
+  stream.frames(PulseDoubt::kSettle);
   stream.sensors = {1, 0, 0};
   stream.frame();
   ck_assert_int_eq(decision.doubtful, 0);
@@ -361,7 +388,7 @@ int main() {
       {nothing_anywhere_means_zero, the_return_delay_counts_from_the_first_frame_and_from_a_reset,
        the_head_returns_five_seconds_after_the_last_detection, limits_without_zero_are_reported,
        invalid_readings_do_not_count_but_are_reported,
-       what_a_turning_base_trips_is_doubtful_and_does_not_count,
+       what_a_turning_base_trips_is_doubtful_and_does_not_count, a_straight_way_makes_doubt_sensor_by_sensor,
        a_doubtful_sensor_that_rests_is_believed_again, sensors_and_base_have_a_time_of_their_own,
        the_paper_holds_where_it_has_no_track, the_paper_ignores_a_fourth_sensor,
        a_table_turns_no_further_than_the_stop, a_users_table_has_hysteresis_return_delay_and_searches,

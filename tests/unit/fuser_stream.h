@@ -8,6 +8,7 @@
 
 #include "fusion/fuser.h"
 #include "sensing/angles.h"
+#include "sensing/own_motion.h"
 #include "support/suite.h"
 
 namespace stream {
@@ -15,6 +16,7 @@ namespace stream {
 using namespace cerberus::fusion;
 using namespace std::chrono_literals;
 using cerberus::sensing::degrees;
+using cerberus::sensing::PulseDoubt;
 using cerberus::sensing::radians;
 
 constexpr Time kFrame = 40ms;
@@ -27,9 +29,10 @@ inline Track person(std::uint32_t id, TrackState state = TrackState::seen) {
 struct Stream {
   Fuser fuser;
   Time now{};
-  double pan = 0;  // degrees
-  double yaw_rate = kUnknown;
-  double lens = 0;  // degrees, as a zoom reports it
+  double pan = 0;              // degrees
+  double yaw_rate = kUnknown;  // degrees a second
+  double speed = kUnknown;     // metres a second
+  double lens = 0;             // degrees, as a zoom reports it
   std::vector<Track> tracks;
   std::vector<std::uint8_t> sensors{0, 0, 0};
 
@@ -42,6 +45,7 @@ struct Stream {
                          .sensors = sensors,
                          .pan = radians(pan),
                          .base_yaw_rate = radians(yaw_rate),
+                         .base_speed = speed,
                          .lens = radians(lens)});
   }
   const Decision& frames(Time duration) {

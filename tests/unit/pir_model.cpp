@@ -359,7 +359,9 @@ START_TEST(a_turning_base_makes_detections_doubtful) {
   model.base(1s, radians(4.9));
   model.edge(1s, true);
   ck_assert(!model.doubtful());
+  model.edge(1500ms, false);
   model.base(2s, radians(-5.1));
+  model.edge(2100ms, true);
   ck_assert(model.doubtful() && presence(model) == 1);
   model.base(3s, 0);
   ck_assert(model.doubtful());  // modules hold what the turn did to them
@@ -383,8 +385,8 @@ END_TEST
 
 START_TEST(a_base_without_further_reports_is_taken_as_standing) {
   PirModel model = started(kPlain);
-  model.edge(1s, true);
   model.base(2s, 1);
+  model.edge(2s, true);
   ck_assert(model.deadline() == 3s);
   model.base(2900ms, 1);  // reported again
   ck_assert(model.deadline() == 3900ms);
@@ -396,11 +398,23 @@ START_TEST(a_base_without_further_reports_is_taken_as_standing) {
   model.poll(6900ms);
   ck_assert(!model.doubtful());
   // Also without a poll in between.
+  model.edge(8s, false);
   model.base(10s, 1);
+  model.edge(10s, true);
   model.poll(14s - 1ns);
   ck_assert(model.doubtful());
   model.poll(14s);
   ck_assert(!model.doubtful());
+}
+END_TEST
+
+START_TEST(a_detection_from_before_a_motion_becomes_doubtful_in_it) {
+  PirModel model = started(kPlain);
+  model.edge(1s, true);
+  for (Time at = 10s; at < 14s; at += 500ms) {
+    model.base(at, 1);
+    ck_assert(model.doubtful() == (at >= 13s));
+  }
 }
 END_TEST
 
@@ -532,6 +546,7 @@ int main() {
                     a_line_that_chatters_is_invalid_until_it_calms_down,
                     no_module_of_the_list_chatters_by_its_own_timing,
                     a_turning_base_makes_detections_doubtful,
+                    a_detection_from_before_a_motion_becomes_doubtful_in_it,
                     a_base_without_further_reports_is_taken_as_standing,
                     a_time_that_goes_back_counts_as_the_last_one,
                     presence_follows_its_definition_on_random_lines,

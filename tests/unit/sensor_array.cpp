@@ -297,9 +297,10 @@ START_TEST(a_turning_base_makes_detections_doubtful) {
   ck_assert(!array.open(make_sensor("scripted"), setup, kAtOnce, 100s));
   SensorReading reading;
   ck_assert(array.next(0s, reading) == SensorArray::Step::reading && reading.doubtful == 0);
-  array.base(500ms, cerberus::sensing::radians(20));
+  const cerberus::sensing::Geometry around;
+  array.base(500ms, around, {.yaw_rate = cerberus::sensing::radians(20)});
   ck_assert(array.next(1s, reading) == SensorArray::Step::reading && reading.doubtful == 0b100);
-  array.base(1s, 0);
+  array.base(1s, around, {.yaw_rate = 0});
   ck_assert(array.next(10s, reading) == SensorArray::Step::reading);
   ck_assert(reading.changed && reading.time == 4s &&
             reading.doubtful == 0);  // modules hold their output for a while

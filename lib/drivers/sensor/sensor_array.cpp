@@ -213,8 +213,10 @@ void SensorArray::seek(Time start) {
   begun_ = sampled_ = false;
 }
 
-void SensorArray::base(Time time, double yaw_rate) {
-  for (auto& model : models_) model.base(time, yaw_rate);
+void SensorArray::base(Time time, const sensing::Geometry& geometry, const sensing::BodyMotion& motion) {
+  const int known = std::min(count(), geometry.count());
+  for (int i = 0; i < known; ++i)
+    models_[static_cast<std::size_t>(i)].base(time, sensing::passing_rate(geometry.sector(i), motion));
 }
 
 }  // namespace cerberus::drivers

@@ -19,7 +19,7 @@ struct SensorReading {
   Time time{};  // on the driver's clock, never going back
   std::array<sensing::Presence, sensing::kMaxSensors> presence{};
   std::array<float, sensing::kMaxSensors> volts{};  // of the newest samples; NaN: there is none
-  sensing::SensorBits doubtful = 0;                 // detections that the robot's own turning may have caused
+  sensing::SensorBits doubtful = 0;                 // detections that the robot's own motion may have caused
   sensing::SensorBits faulty = 0;                   // sensors whose fault() changed with this reading
   bool changed = false;  // presence or doubtful differ from the last reading; true for the first one
 };
@@ -60,8 +60,8 @@ class SensorArray {
   Time due() const;
   // Also why they could not be opened.
   SensorError error() const;
-  // The base turns with `yaw_rate` radians a second from `time` on.
-  void base(Time time, double yaw_rate);
+  // The base moves so from `time` on; geometry: of the sensors.
+  void base(Time time, const sensing::Geometry& geometry, const sensing::BodyMotion& motion);
 
   int count() const { return static_cast<int>(models_.size()); }
   sensing::PirFault fault(int sensor) const { return models_[static_cast<std::size_t>(sensor)].fault(); }
