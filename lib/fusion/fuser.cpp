@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "fusion/follower.h"
+#include "fusion/search/doubt_search.h"
 #include "sensing/own_motion.h"
 
 namespace cerberus::fusion {
@@ -82,6 +83,7 @@ struct Fuser::State {
     int place = 0;
     bool inside = false, seen_left = false, seen_right = false;
     Time arrived{};
+    DoubtSearch search;
 
     // table: the band in force, for hysteresis.
     RuleTable::Match match;
@@ -163,8 +165,10 @@ Decision Fuser::State::complete(const Input& input, Decision next) {
     return next;
   };
   const double lens = input.lens > 0 && input.lens < std::numbers::pi ? input.lens : options.lens;
+  m.search.see(input.sensor_time, input.pan, lens, input.base_yaw_rate);
   if (next.camera_found) {
     forget_places();
+    m.search.forget();
     next.target = m.follower.target();
     return say(next.target != 0 ? Action::track : Action::hold, 1, "camera");
   }
@@ -183,9 +187,16 @@ Decision Fuser::State::complete(const Input& input, Decision next) {
   }
   if (m.fired == 0 && !within(options.return_delay, m.detected, input.sensor_time)) {
     forget_places();
+    const DoubtSearch::View view{input.pan, m.lens, options.limits, options.hysteresis};
+    if (const auto look = m.search.look(geometry, m.doubtful, view)) {
+      next.sector = look->action == Action::search ? look->place.sweep : look->place.wanted;
+      next.limited = look->place.limited;
+      return say(look->action, 0, "doubt");
+    }
     next.limited = !options.limits.holds(0);
     return say(Action::zero, 7, "zero");
   }
+  m.search.forget();
   if (m.places.count == 0) return say(Action::hold, 0, "return");  // the camera lost its target a moment ago
 
   if (m.inside) watch_sweep(input);
@@ -293,6 +304,7 @@ void Fuser::set_options(const FuserOptions& options) {
   // A search continues, with new places.
   if (now.lens == old.lens && now.limits == old.limits) return;
   if (state_->memory.places.count > 0) state_->memory.outdated = true;
+  state_->memory.search.forget();
 }
 
 const FuserOptions& Fuser::options() const {
@@ -303,6 +315,7 @@ void Fuser::set_geometry(const Geometry& geometry) {
   if (geometry == state_->geometry) return;
   state_->geometry = geometry;
   state_->forget_places();
+  state_->memory.search.forget();
 }
 
 void Fuser::set_table(RuleTable table) {
