@@ -101,6 +101,7 @@ void ProjectLaw::on_picture(const Seen& seen, Time now) {
     tracks.push_back(track);
   }
   std::optional<control::FusionDecision> decision;
+  if (decide_) decision.emplace().made = decide_(picture.taken, tracks);
   if (seen.sector) {
     decision.emplace();
     decision->made.action = fusion::Action::search;

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
+#include <span>
 
 #include "closed_loop.h"
 #include "control/head_controller.h"
@@ -20,6 +22,9 @@ class ProjectLaw final : public FollowingLaw {
   void elapse(Time now) override;
   double look(Time time) override { return published_.at(time).pan.position; }
   double asks_base() override { return asks_base_; }
+  // What sensor fusion decides for the tracks of a picture that was taken at a time.
+  using Decide = std::function<fusion::Decision(Time taken, std::span<const fusion::Track>)>;
+  void decide_with(Decide decide) { decide_ = std::move(decide); }
 
  private:
   template <typename F>
@@ -44,6 +49,7 @@ class ProjectLaw final : public FollowingLaw {
   Time next_tick_{}, next_serve_{};
   double field_of_view_;  // where the head's zoom says nothing
   double asks_base_ = 0;
+  Decide decide_;
 };
 
 }  // namespace cerberus::bench
