@@ -276,6 +276,42 @@ START_TEST(the_first_command_is_not_slowed) {
 }
 END_TEST
 
+// Through a lens of 5 degrees an angle is as much of the picture as one 13.2 times as large through a lens of 60.
+START_TEST(dead_bands_and_rest_follow_the_zoom) {
+  for (const double view : {60., 0., 5.}) {
+    const double scale = view == 5 ? std::tan(radians(2.5)) / std::tan(radians(30)) : 1;
+    Loop loop;
+    loop.parameters.field_of_view = radians(view);
+    loop.target = still(10);
+    loop.run(4);
+    // It rests within the band of .7 degrees.
+    ck_assert_double_le(std::abs(loop.error(4)), .7 * scale + .01);
+    // A target that stands and goes on by half of the upper band: nothing; by twice of it: the axis follows.
+    for (const double by : {1.5, 6.}) {
+      Loop near;
+      near.parameters.field_of_view = radians(view);
+      near.target = [=](double t) { return t < 3 ? 0 : by * scale; };
+      near.run(6);
+      const bool follows = std::abs(near.position(6)) > .3 * scale;
+      ck_assert_msg(follows == (by > 3), "%g degrees, by %g: at %g", view, by, near.position(6));
+    }
+  }
+}
+END_TEST
+
+// A fifth of 5 degrees each 40 ms: 25 degrees a second.
+START_TEST(a_long_lens_limits_the_speed_by_what_the_picture_turns) {
+  Loop loop;
+  loop.target = still(60);
+  loop.parameters.field_of_view = radians(5);
+  loop.run(4);
+  double fastest = 0;
+  for (const double speed : loop.commanded) fastest = std::max(fastest, std::abs(speed));
+  ck_assert_double_le(fastest, 25.01);
+  ck_assert_double_ge(fastest, 24);
+}
+END_TEST
+
 START_TEST(nothing_is_allocated) {
   FollowedAxis axis;
   const std::size_t before = cerberus::tests::allocations();
@@ -296,5 +332,6 @@ int main() {
        before_a_target_that_stands_it_rests_though_boxes_wander, it_starts_again_when_the_target_goes,
        calm_lags_most_and_fast_trembles_most, a_long_way_from_picture_to_effect_makes_it_slow_and_not_swing,
        a_new_target_is_centred_and_an_old_one_within_the_band_rests, the_first_command_is_not_slowed,
+       dead_bands_and_rest_follow_the_zoom, a_long_lens_limits_the_speed_by_what_the_picture_turns,
        nothing_is_allocated});
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace cerberus::control {
 
@@ -59,10 +58,11 @@ double pace(Response response) {
   return response == Response::calm ? kCalm : response == Response::fast ? kFast : 1;
 }
 
-// Of angles, against a lens of 60 degrees, at most 1: as much smaller as a longer lens shows the target larger.
+// Of angles, against a lens of 60 degrees: as much smaller as a longer one shows the target larger.
 double view_scale(double field_of_view) {
-  constexpr double kUsual = std::numbers::inv_sqrt3;  // tan 30
-  return field_of_view > 0 ? std::min(1.0, std::tan(field_of_view / 2) / kUsual) : 1;
+  // derived: what cameras without a zoom see, and zooms at their widest, is no less; for them the numbers were swept
+  constexpr double kUsual = radians(60), kLeast = radians(55);
+  return field_of_view > 0 && field_of_view < kLeast ? std::tan(field_of_view / 2) / std::tan(kUsual / 2) : 1;
 }
 
 // Of the bandwidth: what a long way from picture to effect, and pictures that are far between, leave of it.
@@ -130,7 +130,8 @@ motion::AxisCommand FollowedAxis::command(const Aim& aim, const motion::AxisStat
   const double quick = pace(parameters.response) * slowed(times.horizon(), interval_);
   const double close = std::min(quick * parameters.gain * size, std::sqrt(2 * limits.acceleration * size));
   double most = limits.speed;
-  if (parameters.field_of_view > 0 && interval_ > 0)
+  // Also after a gap in which the target was not seen: where it went meanwhile is not known.
+  if (view < 1 && interval_ > 0)
     most = std::min(most, kConstants.most_turn * parameters.field_of_view / interval_);
   const double wanted = std::clamp(rate + std::copysign(close, error), -most, most);
   const double speed = shaped(wanted, ahead, limits.acceleration, times, quick * kConstants.smoothing);

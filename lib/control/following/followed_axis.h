@@ -34,8 +34,8 @@ class FollowedAxis {
     double gain = 6.5;                              // radians a second for each radian of error
     double dead_band_start = sensing::radians(3);   // radians
     double dead_band_stop = sensing::radians(0.7);  // radians
-    // What the camera sees over the picture's width, radians; 0: not known, 60 degrees. Through a longer lens the boxes' noise
-    // and the dead bands are smaller angles, and so is what the picture may turn by from one to the next.
+    // What the camera sees over the picture's width, radians; 0: not known. Through a lens that sees less than a usual one
+    // the boxes' noise and the dead bands are smaller angles, and so is what the picture may turn by from one to the next.
     double field_of_view = 0;
   };
   // When the frame was taken, and when the command takes effect: seconds.
