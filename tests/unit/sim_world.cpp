@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Persons, bases, cameras and scores of the simulated world against numbers worked out by hand.
+#include "sim/asked_base.h"
 #include "sim/camera.h"
 #include "sim/scenes.h"
+#include "sim/zoom_lens.h"
 
 #include <check.h>
 
@@ -141,11 +143,44 @@ START_TEST(a_camera_that_never_finds_the_person_has_no_time_of_finding) {
 }
 END_TEST
 
+// 60 degrees to 30 in tan: log(.57735 / .26795) = .7676, at 1 a second from .15 s on; reports at .5, 1 s.
+START_TEST(a_zoom_goes_at_its_speed_after_its_dead_time_and_reports_twice_a_second) {
+  ZoomLens lens({});
+  lens.elapse(1ms);
+  lens.command(radians(30), 1ms);
+  lens.elapse(150ms);
+  ck_assert_double_eq_tol(degrees(lens.field_of_view()), 60, 1e-9);
+  lens.elapse(535ms);  // half of the way: sqrt(.57735 .26795) is 21.47 degrees to each side
+  ck_assert_double_eq_tol(degrees(lens.field_of_view()), 2 * 21.47, .1);
+  lens.elapse(960ms);
+  ck_assert_double_eq_tol(degrees(lens.field_of_view()), 30, 1e-6);
+  ck_assert_double_gt(degrees(lens.reported()), 40);
+  lens.elapse(1001ms);
+  ck_assert_double_eq_tol(degrees(lens.reported()), 30, 1e-6);
+}
+END_TEST
+
+// 30 a second asked for once: from .2 s on, a ramp of a third of a second, and braked half a second later.
+START_TEST(a_base_turns_as_it_is_asked_for_half_a_second) {
+  AskedBase base;
+  base.ask(radians(30), 0ms);
+  std::chrono::milliseconds now{};
+  const auto at = [&](std::chrono::milliseconds until) {
+    for (; now < until; now += 1ms) base.step(now);
+    return degrees(base.yaw());
+  };
+  ck_assert_double_eq(at(200ms), 0);
+  ck_assert_double_eq_tol(at(700ms), 10, .1);  // 5 by the ramp and 5 after it
+  ck_assert_double_eq_tol(at(2s), 15, .1);     // 5 more to rest
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "sim_world",
-      {a_shuttle_goes_to_and_fro_with_ramps_and_rests, a_short_way_has_no_cruise,
-       a_walker_keeps_its_speed_its_acceleration_and_its_line,
+      {a_zoom_goes_at_its_speed_after_its_dead_time_and_reports_twice_a_second,
+       a_base_turns_as_it_is_asked_for_half_a_second, a_shuttle_goes_to_and_fro_with_ramps_and_rests,
+       a_short_way_has_no_cruise, a_walker_keeps_its_speed_its_acceleration_and_its_line,
        one_seed_gives_one_person_and_another_seed_another,
        boxes_have_the_noise_that_is_asked_white_or_wandering,
        a_picture_shows_a_person_within_the_lens_and_how_far_it_turned,
