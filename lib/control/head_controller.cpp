@@ -65,6 +65,8 @@ void HeadController::open(std::unique_ptr<drivers::HeadRunner> runner, const dri
   selector_.follow(0);
   history_.clear();
   dead_time_.reset();
+  pan_speeds_.reset(setup.pan_speeds, setup.limits.pan.speed);
+  tilt_speeds_.reset(setup.tilt_speeds, setup.limits.tilt.speed);
   base_yaw_.reset();
   taken_.reset();
   zoom_.begin(setup.zoom_table);
@@ -203,6 +205,21 @@ void HeadController::order(drivers::HeadCommand command) {
   runner_->command(command);
 }
 
+void HeadController::learn_speeds(Time before, Time taken) {
+  const std::optional<Turn>& seen = correction_.seen();
+  const Pose from = correction_.driver_pose(before), to = correction_.driver_pose(taken);
+  if (!seen || !to.by_speeds || !dead_time_.agrees()) return;
+  const double dt = motion::seconds(taken - before);
+  const auto learn = [dt](SpeedTable& table, const motion::AxisState& first, const motion::AxisState& last,
+                          double turn) {
+    if (first.speed == last.speed) table.add(dt, last.speed, turn / dt);
+    return table.changed();
+  };
+  const bool pan = learn(pan_speeds_, from.pan, to.pan, seen->yaw);
+  const bool tilt = learn(tilt_speeds_, from.tilt, to.tilt, seen->pitch);
+  if (pan || tilt) runner_->learn(pan_speeds_.map(), tilt_speeds_.map());
+}
+
 // Corrects the pose of a head that reports none by the turn of the picture, and looks for a lost reference.
 void HeadController::correct(const Frame& frame, Time now, DeferredNotifications& out) {
   if (frame.repeats) return;
@@ -214,7 +231,7 @@ void HeadController::correct(const Frame& frame, Time now, DeferredNotifications
   const auto turn = picture_turn(frame);
   if (turn && taken_ && correction_.position())
     dead_time_.add(*taken_, taken, turn->yaw, correction_.reckoned(), setup_.latency);
-  taken_ = taken;
+  const auto before = std::exchange(taken_, taken);
   const Time late = dead_time_.late();
   correction_.set_dead_time(setup_.latency + late);
   const bool base_known = frame.motion && base_is_known(*frame.motion);
@@ -222,6 +239,7 @@ void HeadController::correct(const Frame& frame, Time now, DeferredNotifications
     confine_law();
     runner_->limit(now, correction_.limits(setup_.limits));
   }
+  if (before) learn_speeds(*before - late, taken - late);
   if (correction_.ambiguous() && !std::exchange(gyro_reported_, true)) out.add(MissingGyro{});
   homing_ = homing_ && is_lost() && now - home_tried_ < kHomePatience;
   if (!is_lost() || (lost && now - home_tried_ < kHomePatience)) return;

@@ -18,6 +18,7 @@
 #include "control/following/base_request.h"
 #include "control/following/base_yaw.h"
 #include "control/following/dead_time.h"
+#include "control/following/speed_table.h"
 #include "control/following/zoom_control.h"
 #include "control/law.h"
 #include "control/manual_override.h"
@@ -109,6 +110,8 @@ class HeadController {
   // Of the picture since the frame before, less the reported turn of the base.
   std::optional<Turn> picture_turn(const Frame& frame) const;
   Moment moment_of(const Frame& frame, Time now);
+  // What the picture of a frame shows of the head's speeds. By the driver's reckoning it was between these times.
+  void learn_speeds(Time before, Time taken);
   void correct(const Frame& frame, Time now, DeferredNotifications& out);
   drivers::HeadCommand manual_at(Time now) const;
   void order(drivers::HeadCommand command);
@@ -137,11 +140,12 @@ class HeadController {
   drivers::HeadSetup setup_;
   bool limits_wait_ = false;  // for the end of a halt
   Law law_;
-  motion::PoseHistory history_;  // in the head's time
-  PoseCorrection correction_;    // of a head that the clock drives
-  DeadTime dead_time_;           // of the same
-  BaseYaw base_yaw_;             // below the head
-  std::optional<Time> taken_;    // the frame before, in the head's time
+  motion::PoseHistory history_;          // in the head's time
+  PoseCorrection correction_;            // of a head that the clock drives
+  DeadTime dead_time_;                   // of the same
+  SpeedTable pan_speeds_, tilt_speeds_;  // of the same
+  BaseYaw base_yaw_;                     // below the head
+  std::optional<Time> taken_;            // the frame before, in the head's time
   ZoomControl zoom_;
   BaseRequest base_request_;
   double base_asked_ = 0;  // radians a second

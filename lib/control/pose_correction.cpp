@@ -41,6 +41,7 @@ bool PoseCorrection::on_frame(Time taken, const Pose& ahead, const std::optional
   const Pose raw = raw_.at(taken);
   const PanTilt here{raw.pan.position, raw.tilt.position};
   ahead_ = ahead;
+  seen_.reset();
   if (raw.measured) {
     estimate_.reset(here);
     shift_ = {};
@@ -48,7 +49,8 @@ bool PoseCorrection::on_frame(Time taken, const Pose& ahead, const std::optional
   } else {
     if (before_) {
       const PanTilt reckoned{here.pan - before_->pan, here.tilt - before_->tilt};
-      estimate_.add(reckoned, base_known ? turn : division_.head(taken, reckoned, speed(taken), turn));
+      seen_ = base_known ? turn : division_.head(taken, reckoned, speed(taken), turn);
+      estimate_.add(reckoned, seen_);
     }
     position_ = estimate_.position();
     shift_ = {position_->pan - here.pan, position_->tilt - here.tilt};

@@ -40,6 +40,8 @@ class PoseCorrection {
 
   // The estimated position when the last frame was taken; nullopt before the first and while the driver measures.
   std::optional<motion::PanTilt> position() const { return position_; }
+  // The head's own turn since the frame before, as the picture shows it; nothing: it does not, or the driver measures.
+  const std::optional<Turn>& seen() const { return seen_; }
   bool lost() const { return position_ && estimate_.lost(); }
   // The limits less the stop margin; zero stays within them.
   motion::Limits narrowed(const motion::Limits& limits) const;
@@ -59,6 +61,7 @@ class PoseCorrection {
   motion::PanTilt shift_;
   std::optional<motion::PanTilt> before_;    // the driver's position at the last frame
   std::optional<motion::PanTilt> position_;  // estimated at the last frame
+  std::optional<Turn> seen_;
   motion::Pose ahead_;
   Time dead_time_{};
   std::optional<motion::Limits> sent_;  // as limits() returned them

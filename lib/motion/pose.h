@@ -12,9 +12,10 @@ namespace cerberus::motion {
 struct Pose {
   Time from{};
   Time until = kNever;
-  AxisState pan, tilt;    // at `from`
-  bool settled = true;    // the head rests at its setpoint and no command is pending
-  bool measured = false;  // from the head's position feedback; false: from the commands
+  AxisState pan, tilt;     // at `from`
+  bool settled = true;     // the head rests at its setpoint and no command is pending
+  bool measured = false;   // from the head's position feedback; false: from the commands
+  bool by_speeds = false;  // from the speeds that it was commanded, as its speed map has them
 
   double field_of_view =
       0;  // radians that the camera sees over the frame's width, as the head's zoom says; 0: it says

@@ -28,6 +28,9 @@ class LineHead final : public drivers::Head {
   void stop(Time now) noexcept override;
   std::string command(const drivers::HeadCommand& command) override;
   std::string limit(Time now, const motion::Limits& limits) override;
+  void learn(const motion::SpeedMap& pan, const motion::SpeedMap& tilt) override {
+    client_->learn(pan, tilt);
+  }
   std::string state(Time time, motion::Pose& pose) override { return client_->state(time, pose); }
   bool blocks() const override { return false; }
 

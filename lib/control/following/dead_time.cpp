@@ -50,6 +50,7 @@ void DeadTime::add(motion::Time before, motion::Time taken, double turn, const m
       found = lag;
     }
   }
+  agrees_ = best && found - late_ <= kStep && late_ - found <= kStep;
   if (!best) return;
   const motion::Time step(static_cast<motion::Time::rep>(kParameters.pace * dt * 1e9));
   late_ += std::clamp(found - late_, -step, step);

@@ -24,6 +24,8 @@ class DeadTime {
            motion::Time told);
   // How much later the head turns than it is reckoned; negative: earlier.
   motion::Time late() const { return late_; }
+  // Whether the last frames agree with late().
+  bool agrees() const { return agrees_; }
 
  private:
   static constexpr motion::Time kStep = std::chrono::milliseconds(20);
@@ -37,6 +39,7 @@ class DeadTime {
 
   std::array<Sums, kEarly + 1 + kLate> lags_{};
   motion::Time late_{};
+  bool agrees_ = false;
 };
 
 }  // namespace cerberus::control

@@ -60,6 +60,8 @@ class Head {
   // Sets other limits, which have passed motion::check(), from `now` on (a time as of a command): the last command
   // continues within them. A head beyond them returns, and turns no further out.
   virtual std::string limit(Time now, const motion::Limits& limits) = 0;
+  // What the head was found to make of commanded speeds, from now on. Only a head that is told speeds needs it.
+  virtual void learn(const motion::SpeedMap& /*pan*/, const motion::SpeedMap& /*tilt*/) {}
   // Begins to look for the head's reference, and obeys no command until it was found; the poses are then measured for a
   // moment. The error of a head that has no way to find it leaves it as it was.
   virtual std::string home(Time) { return "the head has no way to find its reference"; }

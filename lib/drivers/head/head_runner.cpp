@@ -19,6 +19,10 @@ struct Limiting {
   motion::Limits limits;
 };
 
+struct Learnt {
+  motion::SpeedMap pan, tilt;
+};
+
 struct Question {
   Time from{}, until{};
 };
@@ -40,13 +44,14 @@ struct HeadRunner::Core {
   struct Batch {
     std::optional<HeadSetup> open;
     std::optional<Limiting> limiting;
+    std::optional<Learnt> learnt;
     std::optional<HeadCommand> command;
     std::optional<Time> stop, home;
     std::optional<Question> question;
     bool quit = false;
     // Returns whether the batch may change the head's trajectory.
     bool moves() const { return open || limiting || command || stop || home; }
-    bool any() const { return moves() || question || quit; }
+    bool any() const { return moves() || learnt || question || quit; }
   } todo;
   unsigned long asked = 0, answered = 0;  // tickets
   unsigned interrupts = 0;
@@ -94,6 +99,7 @@ std::string HeadRunner::Core::carry_out(const Batch& batch) {
   if (batch.stop) head->stop(*batch.stop);
   std::string failed;
   if (batch.open) owed.reset();
+  if (batch.learnt) head->learn(batch.learnt->pan, batch.learnt->tilt);
   if (batch.limiting) owed = batch.limiting;
   if (owed && (batch.limiting || batch.command)) {
     // The limits take the earlier time of both, so that a command older than the limits is not stale.
@@ -242,6 +248,12 @@ void HeadRunner::home(Time now) {
 void HeadRunner::limit(Time now, const motion::Limits& limits) {
   std::unique_lock guard(core_->lock);
   core_->todo.limiting = Limiting{now, limits};
+  core_->hand_over(guard);
+}
+
+void HeadRunner::learn(const motion::SpeedMap& pan, const motion::SpeedMap& tilt) {
+  std::unique_lock guard(core_->lock);
+  core_->todo.learnt = Learnt{pan, tilt};
   core_->hand_over(guard);
 }
 

@@ -50,6 +50,8 @@ class HeadRunner {
   void command(const HeadCommand& command);
   // Lets the head look for its reference, without waiting. A refusal is a failure().
   void home(Time now);
+  // Passes what was learnt, without waiting (Head::learn()).
+  void learn(const motion::SpeedMap& pan, const motion::SpeedMap& tilt);
   // Passes limits as command() does. A waiting command is executed within the new limits only: a head that refuses them
   // is stopped, and the limits are passed again before each command.
   void limit(Time now, const motion::Limits& limits);

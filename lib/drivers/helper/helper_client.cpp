@@ -392,6 +392,7 @@ std::string HelperClient::state(Time time, Pose& pose) {
   if (reckons_) pose = reckoning_.at(time);
   pose.field_of_view = field_of_view();
   pose.measured = is_fresh(time);
+  pose.by_speeds = reckons_;
   if (reckons_ || !measured_) return {};
   // A correction that lags behind a head that brakes leads beyond no limit, unless the head is there.
   const auto correct = [](double position, double correction, double reported,

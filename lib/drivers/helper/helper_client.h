@@ -47,6 +47,11 @@ class HelperClient {
   std::string execute(Time now);
   void stop(Time now) noexcept;
   std::string limit(Time now, const motion::Limits& limits);
+  // What the head makes of commanded speeds, of commands and of its reports from now on.
+  void learn(const motion::SpeedMap& pan, const motion::SpeedMap& tilt) {
+    setup_.pan_speeds = pan;
+    setup_.tilt_speeds = tilt;
+  }
   std::string home(Time now);
   // Sends what is due. Returns when it must be called again at the latest; motion::kNever: not by itself.
   Time serve(Time now);

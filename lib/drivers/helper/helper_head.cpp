@@ -332,6 +332,12 @@ std::string HelperHead::limit(Time now, const motion::Limits& limits) {
   return wrong;
 }
 
+void HelperHead::learn(const motion::SpeedMap& pan, const motion::SpeedMap& tilt) {
+  if (!core_) return;
+  const std::lock_guard guard(core_->lock);
+  core_->client.learn(pan, tilt);
+}
+
 bool HelperHead::emergency() {
   if (!core_) return false;
   const std::lock_guard guard(core_->lock);

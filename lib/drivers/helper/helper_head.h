@@ -33,6 +33,7 @@ class HelperHead final : public Head {
   void stop(Time now) noexcept override;
   std::string command(const HeadCommand& command) override;
   std::string limit(Time now, const motion::Limits& limits) override;
+  void learn(const motion::SpeedMap& pan, const motion::SpeedMap& tilt) override;
   std::string home(Time now) override;
   std::string state(Time time, motion::Pose& pose) override;
   bool emergency() override;
