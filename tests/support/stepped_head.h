@@ -39,6 +39,9 @@ class SteppedHead final : public drivers::Head {
     open_ = client_->ready();
     return open_ ? std::string() : client_->fault();
   }
+  void learn(const motion::SpeedMap& pan, const motion::SpeedMap& tilt) override {
+    client_->learn(pan, tilt);
+  }
   void close() noexcept override {
     open_ = false;
     server_.reset();

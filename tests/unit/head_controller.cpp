@@ -47,6 +47,8 @@ struct Record {
   std::function<void()> in_command, in_state;  // called by these, if set
   int homes = 0;
   bool simulated = true;
+  bool by_speeds = false;              // of its poses
+  std::vector<motion::SpeedMap> maps;  // of pan, as learnt
 };
 
 class RecordedHead : public drivers::Head {
@@ -71,8 +73,11 @@ class RecordedHead : public drivers::Head {
   }
   std::string state(Time time, Pose& pose) override {
     if (record_->in_state) record_->in_state();
-    return head_->state(time, pose);
+    std::string wrong = head_->state(time, pose);
+    pose.by_speeds = record_->by_speeds;
+    return wrong;
   }
+  void learn(const motion::SpeedMap& pan, const motion::SpeedMap&) override { record_->maps.push_back(pan); }
   bool emergency() override { return record_->emergency; }
   bool parted() override { return std::exchange(record_->parted, false); }
   std::string home(Time) override {
@@ -1057,6 +1062,45 @@ START_TEST(a_reference_is_lost_only_where_the_picture_is_measured) {
 }
 END_TEST
 
+// A head that turns by three quarters of what it is commanded. Where its pose is of angles, its model is not of speeds.
+START_TEST(what_the_picture_shows_of_a_head_s_speeds_is_given_to_its_driver) {
+  const double pixel =
+      base_turn(vision::Transform::translation(-1, 0), kLens, {640, 480}, {}, {}).yaw;  // radians
+  for (const bool by_speeds : {false, true}) {
+    Options options;
+    options.clock_driven = true;
+    options.simulated = false;
+    Rig rig(options);
+    rig.record->by_speeds = by_speeds;
+    const auto twin = drivers::make_head("simulated");
+    assert_text(twin->open(options.setup), "");
+    double before = 0;
+    std::size_t given = 0;
+    for (int k = 0; k < 500; ++k) {
+      const Time now = k * 40ms;
+      const double speed = (k / 25 % 2 == 0 ? 1 : -1) * (k / 50 % 2 == 0 ? 10 : 20);
+      rig.controller.turn(radians(speed), 0, now, rig.out);
+      rig.controller.tick(now, rig.out);
+      for (; given < rig.record->commands.size(); ++given) twin->command(rig.record->commands[given]);
+      Pose pose;
+      assert_text(twin->state(now, pose), "");
+      auto frame = Rig::empty(now);
+      const double turned = .75 * (pose.pan.position - before);
+      before = pose.pan.position;
+      frame.motion =
+          PictureMotion{vision::Transform::translation(-turned / pixel, 0), 1, {640, 480}, 0, true};
+      ck_assert(rig.controller.frame(frame, rig.out) == Answer::done);
+      rig.collect();
+    }
+    ck_assert_int_eq(!rig.record->maps.empty(), by_speeds);
+    if (!by_speeds) continue;
+    // This driver does not use it: what is learnt says so each time. The first one is right.
+    const double first = degrees(rig.record->maps.front().actual(radians(15)));
+    ck_assert_msg(first > .7 * 15 && first < .95 * 15, "%g", first);
+  }
+}
+END_TEST
+
 START_TEST(a_head_that_cannot_be_opened_is_an_error_and_reported_once) {
   Options options;
   options.refusal = "no such port";
@@ -1153,6 +1197,7 @@ int main() {
                            an_order_to_a_driver_that_does_not_answer_moves_nothing_later,
                            an_order_that_ends_the_fault_is_obeyed,
                            a_reference_is_lost_only_where_the_picture_is_measured,
+                           what_the_picture_shows_of_a_head_s_speeds_is_given_to_its_driver,
                            a_head_that_cannot_be_opened_is_an_error_and_reported_once,
                            an_interrupted_frame_is_passed_again});
 }

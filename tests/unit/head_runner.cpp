@@ -279,6 +279,9 @@ class StopNoter final : public Head {
   }
   std::string limit(Time now, const Limits& limits) override { return head_->limit(now, limits); }
   std::string state(Time time, Pose& pose) override { return head_->state(time, pose); }
+  void learn(const SpeedMap& pan, const SpeedMap&) override {
+    *notes_ += "learn " + std::to_string(pan.points().size()) + " ";
+  }
 
  private:
   std::shared_ptr<std::string> notes_;
@@ -286,6 +289,26 @@ class StopNoter final : public Head {
 };
 
 }  // namespace
+
+START_TEST(what_was_learnt_comes_before_the_command_that_waits) {
+  Pipe gate, record;
+  auto notes = std::make_shared<std::string>();
+  HeadRunner runner(std::make_unique<StopNoter>(notes), {});
+  HeadSetup setup;
+  setup.script = "record " + record.writer() + "; command wait " + gate.reader();
+  ck_assert(runner.open(setup, 60s) == Answer::done);
+  record.line();
+  runner.command(go(1s, 1));
+  record.line();
+  runner.command(go(2s, 2));
+  runner.learn(SpeedMap({{1, 2}}), {});
+  runner.learn(SpeedMap({{1, 2}, {2, 3}}), {});  // the newest counts
+  gate.close_writer();
+  std::vector<Pose> poses;
+  ck_assert(runner.ask({}, 3s, 3s, poses, 60s) == Answer::done);
+  assert_text(*notes, "command learn 2 command ");
+}
+END_TEST
 
 START_TEST(a_hold_after_a_stop_that_waits_does_not_revoke_it_and_a_move_does) {
   for (const auto& [moves, by_stop] : {std::pair{false, false}, {true, false}, {false, true}}) {
@@ -558,6 +581,7 @@ int main() {
        new_limits_come_before_the_command_that_waits,
        a_head_that_refuses_limits_is_stopped_and_obeys_nothing_until_it_takes_them,
        of_commands_given_meanwhile_only_the_newest_counts,
+       what_was_learnt_comes_before_the_command_that_waits,
        a_hold_after_a_stop_that_waits_does_not_revoke_it_and_a_move_does,
        a_stop_beats_the_commands_before_it,
        a_blocked_driver_keeps_its_lease_and_closes_by_itself,

@@ -181,6 +181,27 @@ START_TEST(the_speeds_that_a_helper_reports_are_reckoned_from_the_dead_time_on) 
 }
 END_TEST
 
+// The head makes half of its commands, as was learnt while it turned.
+START_TEST(what_is_learnt_of_speeds_counts_for_commands_and_reports_from_then_on) {
+  HeadSetup setup;
+  setup.latency = 200ms;
+  Rig rig(setup, "ready 1 velocity rate 10");
+  rig.command({0s, {Kind::velocity, radians(20), 0}, {}});
+  rig.client.handle("speeds 20 0 0", 0s);
+  const double before = degrees(rig.at(1s).pan.position);
+  ck_assert_double_eq_tol(before, 16, 1e-9);
+  rig.now = 1s;
+  const cerberus::motion::SpeedMap half({{radians(90), radians(45)}});
+  rig.client.learn(half, {});
+  rig.client.handle("speeds 20 0 0", 800ms);  // in force from 1 s on
+  ck_assert_double_eq_tol(degrees(rig.at(2s).pan.position), before + 10, 1e-9);
+  ck_assert(rig.at(2s).by_speeds);
+  rig.sent.clear();
+  rig.command({2s, {Kind::velocity, radians(20), 0}, {}});
+  ck_assert_double_ge(Rig::speed_of(rig.sent.back().line), 40);
+}
+END_TEST
+
 // The model stands at the limit of 10 degrees while the head still reported 12 degrees more than the model.
 START_TEST(a_correction_leads_beyond_no_limit_unless_the_head_reports_that) {
   HeadSetup setup;
@@ -332,5 +353,6 @@ int main() {
        a_pose_that_is_no_number_is_a_fault_and_no_pose, a_head_that_works_again_is_where_it_reports_to_be,
        a_head_that_is_beyond_its_limits_at_the_start_is_no_fault_and_does_not_move_by_itself,
        the_speeds_that_a_helper_reports_are_reckoned_from_the_dead_time_on,
+       what_is_learnt_of_speeds_counts_for_commands_and_reports_from_then_on,
        a_correction_leads_beyond_no_limit_unless_the_head_reports_that});
 }
