@@ -206,6 +206,8 @@ struct Slower {
   double factor;
 };
 constexpr Slower kSlower[] = {{"mix", 4. / 3}, {"near", 3. / 2}, {"run", 5. / 3}};
+// Of a quotient of two medians of 20 seeds: by so much it differs where a gain changes by half a percent.
+constexpr double kNoise = .05;
 
 void print_slower(Asked& asked, const Table& project) {
   sim::CameraTraits late, rare;
@@ -222,9 +224,10 @@ void print_slower(Asked& asked, const Table& project) {
                                  ", RMS over the usual one";
         // A runner before B loses a little more, of a figure that has become better than what is asked of it.
         const bool promised = letter != 'B' || std::strcmp(slower.scene, "run") != 0;
-        std::printf("%c %-5s %s %7.2f, usually %7.2f%s\n", letter, slower.scene,
+        std::printf("%c %-5s %s %7.2f, usually %7.2f%s;%s\n", letter, slower.scene,
                     camera == &late ? "200 ms     " : "10 a second", rms, usual,
-                    asked.at_most(what, rms / usual, slower.factor, promised).c_str());
+                    asked.at_most(what, rms / usual, slower.factor + kNoise, promised).c_str(),
+                    asked.at_most(what, rms / usual, slower.factor, false).c_str());
       }
     }
 }

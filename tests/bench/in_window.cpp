@@ -22,7 +22,7 @@ namespace {
 constexpr int kLeastFrames = 40;  // annotated
 // Of the frames that are judged, with the middle inside. Seen: .978 to .987; 1.000 with .03 degrees of noise on the poses.
 constexpr double kAsked = 0.97;
-// Person 9, from frame 4 on, stands with two others for 30 s, and which of the three tracks is that person's afterwards is
+// Person 9, from frame 4 on, stands with two others for 8 s, and which of the three tracks is that person's afterwards is
 // chance: with 24 seeds of .03 degrees of noise on the poses .79 +- .05 are inside, with the proportional law before as now.
 constexpr int kByChance = 9, kByChanceFrom = 4;
 // Degrees. Seen: 1.9, and 2.1 with the proportional law before; asked of the whole, where 3.3 is seen.

@@ -112,7 +112,7 @@ struct Loop {
 
 }  // namespace
 
-// A proportional law of the same bandwidth would trail by 20 / 6.8 = 3 degrees.
+// A proportional law of the same bandwidth would trail by 20 / 6.5 = 3 degrees.
 START_TEST(it_goes_with_a_target_and_does_not_run_after_it) {
   for (const double speed : {5., 20., -40.}) {
     Loop loop;

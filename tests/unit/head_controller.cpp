@@ -275,8 +275,8 @@ START_TEST(the_error_is_that_at_the_time_when_the_command_takes_effect) {
   rig.process(Rig::with(1s, Action::track, 5));
   // The turn began at 0.06 s. At 1 s the head is at 2 + 0.84 x 40 = 35.6: the target is at 40.6. The command takes
   // effect at 1.06 s, but published poses, which end at 1 s, are not touched: the head is then at 38, and 2.6 degrees are
-  // left. The speed approaches the one for them, 6.8 x 2.6 = 17.7, by 10 a second for 40 ms.
-  assert_goes(rig.command().pan, 40.6, 40 - .04 * 10 * (40 - 6.8 * 2.6));
+  // left. The speed approaches the one for them, 6.5 x 2.6 = 16.9, by 10 a second for 40 ms.
+  assert_goes(rig.command().pan, 40.6, 40 - .04 * 10 * (40 - 6.5 * 2.6));
 }
 END_TEST
 

@@ -31,7 +31,7 @@ class FollowedAxis {
  public:
   struct Parameters {
     Response response = Response::normal;
-    double gain = 6.8;                              // radians a second for each radian of error
+    double gain = 6.5;                              // radians a second for each radian of error
     double dead_band_start = sensing::radians(3);   // radians
     double dead_band_stop = sensing::radians(0.7);  // radians
     // What the camera sees over the picture's width, radians; 0: not known. Through a lens that sees less than a usual one
