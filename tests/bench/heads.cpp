@@ -111,7 +111,8 @@ const Bound kBounds[] = {
     {"D", "mix", kRms, &Figures::rms, 4, 3},
     {"AF", "behind", kOut, &Figures::lost, 21, 18},
     {"BK", "behind", kOut, &Figures::lost, 19, 18},
-    {"CDL", "behind", kOut, &Figures::lost, 32, 26},
+    {"CL", "behind", kOut, &Figures::lost, 32, 26},
+    {"D", "behind", kOut, &Figures::lost, 40, 26},  // half as much again from 20 seeds to 20 others
     {"ABCFK", "turned", kOut, &Figures::lost, 1, 0},
     {"ABCFK", "rest", kReversals, &Figures::reversals, 1, 1},
     {"ABCFK", "wander", kReversals, &Figures::reversals, 6, 3},
