@@ -13,7 +13,7 @@ constexpr double kFirst = -10, kSecond = 10;  // bearings
 
 // Two people stand there. The usual choice is the first: the feet are lower, and a fusion decision, if any, names it.
 struct Scene {
-  Rig rig;
+  Rig rig{"tilt-min=0 tilt-max=0"};  // the persons are drawn for a level camera
   bool fused;
   int next = 0;
   double pan = 0;  // when the next frame is taken
