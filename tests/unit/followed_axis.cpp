@@ -189,6 +189,18 @@ START_TEST(it_brakes_in_time) {
 }
 END_TEST
 
+// The goal of a command lies beyond a target that goes away: the law brakes, not the axis.
+START_TEST(it_does_not_shoot_past_a_target_that_it_catches_up_with) {
+  Loop loop;
+  loop.target = [](double t) { return 60 + 15 * t; };
+  loop.limits.acceleration = radians(60);
+  loop.run(5);
+  double past = 0;
+  for (double t = 0; t < 5; t += .01) past = std::max(past, -loop.error(t));
+  ck_assert_msg(past < 1, "%g", past);
+}
+END_TEST
+
 START_TEST(before_a_target_that_stands_it_rests_though_boxes_wander) {
   for (const double wander : {0., .3}) {
     Loop loop;
@@ -329,6 +341,7 @@ int main() {
       {it_goes_with_a_target_and_does_not_run_after_it,
        where_the_target_is_when_the_command_takes_effect_counts, a_base_that_turns_is_no_motion_of_the_target,
        speed_acceleration_and_jerk_are_limited, it_brakes_in_time,
+       it_does_not_shoot_past_a_target_that_it_catches_up_with,
        before_a_target_that_stands_it_rests_though_boxes_wander, it_starts_again_when_the_target_goes,
        calm_lags_most_and_fast_trembles_most, a_long_way_from_picture_to_effect_makes_it_slow_and_not_swing,
        a_new_target_is_centred_and_an_old_one_within_the_band_rests, the_first_command_is_not_slowed,
