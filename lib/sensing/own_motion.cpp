@@ -34,17 +34,17 @@ double passing_rate(const Arc& field, const BodyMotion& motion) {
 }
 
 void PulseDoubt::update(Time time, bool high, bool moves) {
-  time = std::max(time, time_);
+  time = std::clamp(time, time_, kNever - kDoubtLinger);  // no sum or difference below overflows
   time_ = time;
   if (moves_)
     moved_ = time;
-  else if (high_ && time - moved_ >= kDoubtLinger)
+  else if (high_ && moved_ <= time - kDoubtLinger)
     evidence_ = time;
   if (moves) moved_ = time;
-  if (high && !high_) evidence_ = time - moved_ >= kSettle ? time : kLongAgo;
+  if (high && !high_) evidence_ = moved_ <= time - kSettle ? time : kLongAgo;
   high_ = high;
   moves_ = moves;
-  doubtful_ = high && time - evidence_ >= kDoubtLinger;
+  doubtful_ = high && evidence_ <= time - kDoubtLinger;
 }
 
 Time PulseDoubt::due() const {
