@@ -166,9 +166,11 @@ def test_rtsp(program, example=None):
         stop(server)
     if example:  # a program in C that mounts the same in its own server
         server = start([example, '0', source])
-        readers = Readers()
-        watch(readers, server.stdout.readline().strip(), 'drawn.raw', 'h264', 'tcp')
-        readers.compare()
+        address = server.stdout.readline().strip()
+        for by in ('ffmpeg', 'GStreamer'):  # its source is a file, which a second client that joins may start anew
+            readers = Readers()
+            watch(readers, address, 'drawn.raw', 'h264', 'tcp', by=by)
+            readers.compare()
 
 
 def free_port(kind=socket.SOCK_STREAM):
