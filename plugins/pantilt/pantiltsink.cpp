@@ -241,7 +241,7 @@ std::optional<control::PictureMotion> motion_of(State& state, GstBuffer* buffer,
   const auto step = state.camera.next(path_point(buffer), clock_time(state.taken), size);
   if (!motion || step.link != vision::CameraFollower::Link::follows || !state.taken) return std::nullopt;
   const CerberusBase* base = cerberus_buffer_peek_base(buffer);
-  const bool reported = base && base->source == CERBERUS_BASE_REPORTED;
+  const bool reported = base && base->source == CERBERUS_BASE_REPORTED && std::isfinite(base->yaw_rate);
   const double base_yaw = reported ? radians(base->yaw_rate) * motion::seconds(taken - *state.taken) : 0;
   return control::PictureMotion{step.motion.transform, motion->confidence, size, base_yaw, reported};
 }
