@@ -311,7 +311,10 @@ std::string HelperClient::accept(const HeadCommand& command) {
     adopts_ = true;
   }
   HeadCommand obeyed = command;
-  if (!loss_.empty() || !why_idle().empty()) obeyed.pan = obeyed.tilt = {};
+  if (!loss_.empty() || !why_idle().empty()) {
+    obeyed.pan = obeyed.tilt = {};
+    obeyed.zoom.reset();
+  }
   if (std::string wrong = model_.command(obeyed); !wrong.empty()) return wrong;
   last_ = obeyed;
   if (std::exchange(homing_, std::nullopt)) last_move_.clear();
