@@ -26,7 +26,10 @@ void SpeedTable::reset(const motion::SpeedMap& known, double fastest) {
 }
 
 double SpeedTable::actual(double commanded) const {
-  return known_.actual(commanded) * std::exp(a_ + b_ * std::log(commanded / fastest_));
+  constexpr double kMost =
+      kGate * kParameters.unknown;  // a head that differs by more has another lens than is told
+  return known_.actual(commanded) *
+         std::exp(std::clamp(a_ + b_ * std::log(commanded / fastest_), -kMost, kMost));
 }
 
 void SpeedTable::add(double dt, double reckoned, double seen) {
