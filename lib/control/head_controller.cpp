@@ -27,6 +27,8 @@ constexpr motion::Time kEarly = milliseconds(100), kStale = std::chrono::seconds
 constexpr motion::Time kHomePatience = std::chrono::seconds(60);
 // A request to the base is repeated this often. derived: five times in the half second that it holds
 constexpr motion::Time kAskAgain = milliseconds(100);
+// A picture that is repeated for longer is too old to predict from. derived: as long as TargetFilter bridges
+constexpr motion::Time kLongestBlind = milliseconds(500);
 constexpr auto kTickPatience = milliseconds(10);
 // This is long because results must not depend on the load of the machine; a state change interrupts the wait.
 constexpr auto kFramePatience = std::chrono::seconds(10);
@@ -141,6 +143,7 @@ void HeadController::forget() {
   fresh_ = true;
   latest_ = std::max(latest_, published_);  // published poses stay valid
   law_.reset();
+  base_yaw_.reset();
   selector_.reset();
   ended_ = false;
 }
@@ -312,6 +315,7 @@ void HeadController::report_fault(const std::string& failure, bool ends_order, T
                                   DeferredNotifications& out) {
   if (failure.empty()) return;
   const bool known = std::exchange(faulty_, true);
+  if (!known) law_.reset();
   if (ends_order) manual_.expire(kOrderEnded);
   const bool ended = manual_.active() && manual_.reason() == kOrderEnded;
   report(HeadState::fault, ended ? failure + " (the manual command ended)" : failure, head, out);
@@ -374,8 +378,12 @@ Moment HeadController::moment_of(const Frame& frame, Time now) {
   base_yaw_.on_frame(taken, reported, picture_turn(frame),
                      {capture.pan.position, reckoned, motion::seconds(setup_.latency)});
   const Time effect = effect_of(now);
-  Moment moment{
-      capture, history_.at(effect), {motion::seconds(taken), motion::seconds(effect)}, base_yaw_.at(effect)};
+  const Time blind =
+      frame.repeats ? std::max(Time::zero(), frame.running - *frame.repeats - kLongestBlind) : Time::zero();
+  Moment moment{capture,
+                history_.at(effect),
+                {motion::seconds(taken), motion::seconds(effect), motion::seconds(blind)},
+                base_yaw_.at(effect - blind)};
   if (frame.picture.width > 0 && frame.lens.known())
     moment.view = 2 * std::atan(frame.picture.width / 2. / frame.lens.focal_length());
   moment.dead_time = motion::seconds(effect - now);
@@ -410,7 +418,8 @@ HeadCommand HeadController::decide(const Frame& frame, Time now, DeferredNotific
   command.zoom = zoom_.on_frame(moment.times.taken, selection.goal, frame.seen->tracks, frame.picture,
                                 history_.at(frame.repeats.value_or(frame.running) + epoch_).field_of_view);
   const LawOptions& options = law_.options();
-  const bool seen = axes.target && !faulty_ && is_seen(*frame.seen, selection.goal.track);
+  const bool seen =
+      axes.target && !faulty_ && moment.times.blind == 0 && is_seen(*frame.seen, selection.goal.track);
   ask_base(
       seen ? base_request_.update(axes.target->pan, axes.target->rate, options.limits.pan, options.base_turn)
            : 0,
@@ -585,6 +594,7 @@ void HeadController::end(std::optional<Time> at, drivers::HeadRunner::Patience p
 // Reports the expiry of the watchdog.
 void HeadController::on_timeout(Time head, DeferredNotifications& out) {
   manual_.expire("the manual command ended: no frame came");
+  law_.reset();  // what was planned is of a picture that is old
   ask_base(0, head, out);
   report(HeadState::stopped, "no frame came for " + std::to_string(timeout_ / milliseconds(1)) + " ms", head,
          out);

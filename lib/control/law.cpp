@@ -125,9 +125,10 @@ Command Law::search(const sensing::Interval& sector, const motion::Pose& ahead) 
   return command;
 }
 
-Command Law::zero() const {
+Command Law::zero() {
   Command command;
   command.state = State::zeroing;
+  left_.reset();  // of long ago by the time at which a search begins
   command.pan = command.tilt = go(0, options_.turn_speed);
   return command;
 }

@@ -80,7 +80,7 @@ class Law {
   std::optional<Command> go_on_round(const Moment& moment);
   Command turn(double direction, const motion::Pose& ahead) const;
   Command search(const sensing::Interval& sector, const motion::Pose& ahead);
-  Command zero() const;
+  Command zero();
 
   LawOptions options_;
   fusion::Action last_ = fusion::Action::hold;

@@ -78,7 +78,10 @@ FollowedAxis::Aim FollowedAxis::observe(double angle, const BaseTurn& base, cons
                                         const Parameters& parameters) {
   const Constants& c = kConstants;
   const double view = view_scale(parameters.field_of_view);
-  interval_ = quick_.known() ? std::clamp(times.taken - taken_, 0.0, TargetFilter::kPause) : 0;
+  if (!quick_.known())
+    interval_ = 0;
+  else if (times.taken > taken_)
+    interval_ = std::min(times.taken - taken_, TargetFilter::kPause);
   taken_ = times.taken;
   const double world = angle + base.taken, v = quick_.known() ? quick_.rate() : 0;
   // Its bandwidth goes with the fourth root of its density. Rare pictures slow a filter by themselves.
@@ -88,7 +91,7 @@ FollowedAxis::Aim FollowedAxis::observe(double angle, const BaseTurn& base, cons
       {c.box_noise * view, faster * (c.standing * square(view) + c.passing * square(v * v)), c.first_rate});
   slow_.add(times.taken, world, {c.box_noise * view, c.slow * square(view), c.first_rate});
   Aim aim;
-  aim.position = quick_.at(times.effect) - base.effect;
+  aim.position = quick_.at(times.predicted()) - base.effect;
   aim.rate = quick_.rate() - base.rate;
   aim.calm = slow_.at(times.taken) - base.effect;
   if (std::abs(slow_.rate() - base.rate) >= c.still * view ||
@@ -100,8 +103,8 @@ FollowedAxis::Aim FollowedAxis::observe(double angle, const BaseTurn& base, cons
 
 double FollowedAxis::shaped(double speed, const motion::AxisState& ahead, double most, const Times& times,
                             double smoothing) {
-  double dt = times.effect - commanded_;
-  if (commanded_ < 0 || dt > TargetFilter::kPause) {  // of an axis that did something else
+  double dt = std::max(0.0, times.effect - commanded_);  // the dead time that is learnt may become shorter
+  if (commanded_ < 0 || dt > TargetFilter::kPause) {     // of an axis that did something else
     speed_ = ahead.speed;
     acceleration_ = 0;
     dt = kConstants.jerk_time;

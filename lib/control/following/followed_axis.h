@@ -38,10 +38,12 @@ class FollowedAxis {
     // the boxes' noise and the dead bands are smaller angles, and so is what the picture may turn by from one to the next.
     double field_of_view = 0;
   };
-  // When the frame was taken, and when the command takes effect: seconds.
+  // When the frame was taken, and when the command takes effect: seconds. blind: for how much of that time nothing may be
+  // predicted, since the picture is an old one again.
   struct Times {
-    double taken = 0, effect = 0;
+    double taken = 0, effect = 0, blind = 0;
     double horizon() const { return effect - taken; }
+    double predicted() const { return effect - blind; }
   };
   // Where the target is when the command takes effect.
   struct Aim {
