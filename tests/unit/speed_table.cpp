@@ -90,6 +90,17 @@ START_TEST(the_driver_is_not_bothered_by_noise) {
 }
 END_TEST
 
+// By a lens that sees less than is told, every turn seems to be slower than it is.
+START_TEST(a_wrong_lens_makes_no_head_much_faster_than_its_limit) {
+  Head head;
+  head.real = power(.2, 1);
+  head.noise = .01;
+  head.turn(600, 20, 50);
+  ck_assert_double_lt(head.learnt(kFastest), .6 * kFastest);
+  ck_assert_double_gt(head.learnt(kFastest), .35 * kFastest);
+}
+END_TEST
+
 START_TEST(speeds_that_the_picture_does_not_show_teach_nothing) {
   Head slow;  // less than the noise of a frame
   slow.turn(60, .1, 1.5);
@@ -123,7 +134,8 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "speed_table", {scale_and_bend_of_a_table_are_found_in_seconds,
-                      a_calibration_is_kept_as_long_as_it_is_right, the_driver_is_not_bothered_by_noise,
-                      speeds_that_the_picture_does_not_show_teach_nothing, absurd_frames_are_left_out});
+      "speed_table",
+      {scale_and_bend_of_a_table_are_found_in_seconds, a_calibration_is_kept_as_long_as_it_is_right,
+       the_driver_is_not_bothered_by_noise, a_wrong_lens_makes_no_head_much_faster_than_its_limit,
+       speeds_that_the_picture_does_not_show_teach_nothing, absurd_frames_are_left_out});
 }

@@ -26,10 +26,10 @@ void SpeedTable::reset(const motion::SpeedMap& known, double fastest) {
 }
 
 double SpeedTable::actual(double commanded) const {
-  constexpr double kMost =
-      kGate * kParameters.unknown;  // a head that differs by more has another lens than is told
+  // At its full speed a head that differs by more has another lens than is told.
+  constexpr double kMost = kGate * kParameters.unknown;
   return known_.actual(commanded) *
-         std::exp(std::clamp(a_ + b_ * std::log(commanded / fastest_), -kMost, kMost));
+         std::exp(std::clamp(a_, -kMost, kMost) + b_ * std::log(commanded / fastest_));
 }
 
 void SpeedTable::add(double dt, double reckoned, double seen) {
