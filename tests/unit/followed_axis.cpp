@@ -324,6 +324,31 @@ START_TEST(a_long_lens_limits_the_speed_by_what_the_picture_turns) {
 }
 END_TEST
 
+// The dead time that is learnt becomes shorter, and two frames come at once.
+START_TEST(an_effect_that_comes_before_the_last_one_changes_no_speed) {
+  FollowedAxis axis;
+  axis.begin();
+  const AxisLimits limits{-3, 3, radians(90), radians(300)};
+  double last = 0;
+  for (int k = 0; k <= 10; ++k) {
+    const double taken = k * .04, effect = k < 10 ? taken + .3 : taken + .1;
+    const FollowedAxis::Times times{taken, effect};
+    const AxisCommand command = axis.command(axis.observe(radians(20), {}, times, {}), {}, limits, times, {});
+    if (k == 10) ck_assert_double_eq_tol(command.speed, last, radians(.1));
+    last = command.speed;
+  }
+}
+END_TEST
+
+// A picture that is shown again and again moves no target on for ever.
+START_TEST(nothing_is_predicted_where_the_axis_is_blind) {
+  FollowedAxis axis;
+  for (int k = 0; k <= 25; ++k) axis.observe(radians(20) * k * .04, {}, {k * .04, k * .04 + .1}, {});
+  const auto aim = axis.observe(radians(20), {}, {1, 11.1, 10}, {});
+  ck_assert_double_eq_tol(degrees(aim.position), 22, 1);
+}
+END_TEST
+
 START_TEST(nothing_is_allocated) {
   FollowedAxis axis;
   const std::size_t before = cerberus::tests::allocations();
@@ -346,5 +371,6 @@ int main() {
        calm_lags_most_and_fast_trembles_most, a_long_way_from_picture_to_effect_makes_it_slow_and_not_swing,
        a_new_target_is_centred_and_an_old_one_within_the_band_rests, the_first_command_is_not_slowed,
        dead_bands_and_rest_follow_the_zoom, a_long_lens_limits_the_speed_by_what_the_picture_turns,
-       nothing_is_allocated});
+       an_effect_that_comes_before_the_last_one_changes_no_speed,
+       nothing_is_predicted_where_the_axis_is_blind, nothing_is_allocated});
 }
