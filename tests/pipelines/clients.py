@@ -351,7 +351,7 @@ def compare_sizes(path, before, sizes, each):
     """A file with `each` pictures of every size."""
     must(gst_launch(f'filesrc location={path} ! decodebin ! {I420} ! filesink location=GStreamer.raw'))
     if shutil.which('ffmpeg'):
-        must(run(f'ffmpeg -nostdin -y -v error -i {path} -autoscale 0 -fps_mode passthrough -f rawvideo '
+        must(run(f'ffmpeg -nostdin -y -v error -i {path} -noautoscale -fps_mode passthrough -f rawvideo '
                  '-pix_fmt yuv420p ffmpeg.raw'))
     for name in ('GStreamer', 'ffmpeg') if shutil.which('ffmpeg') else ('GStreamer',):
         with open(before, 'rb') as first, open(f'{name}.raw', 'rb') as found:
