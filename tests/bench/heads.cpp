@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "asked.h"
+#include "drivers/helper/option_words.h"
 #include "heads_zoom.h"
 #include "peer_laws.h"
 #include "project_law.h"
@@ -233,17 +234,6 @@ void print_slower(Asked& asked, const Table& project) {
     }
 }
 
-std::vector<std::string> split(const std::string& words) {
-  std::vector<std::string> parts;
-  std::size_t from = 0;
-  while (from <= words.size()) {
-    const std::size_t comma = std::min(words.find(',', from), words.size());
-    parts.push_back(words.substr(from, comma - from));
-    from = comma + 1;
-  }
-  return parts;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -253,7 +243,7 @@ int main(int argc, char** argv) {
     return asked.verdict();
   }
   if (argc > 2) {
-    print_project(asked, argv[1], split(argv[2]), argc > 3 ? std::atoi(argv[3]) : kSeeds);
+    print_project(asked, argv[1], drivers::split(argv[2], ','), argc > 3 ? std::atoi(argv[3]) : kSeeds);
     return 0;
   }
   const std::vector<std::string> scenes(std::begin(sim::kScenes), std::end(sim::kScenes));

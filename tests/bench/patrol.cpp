@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "asked.h"
+#include "drivers/helper/option_words.h"
 #include "project_law.h"
 #include "sim/patrols.h"
 
@@ -239,16 +240,6 @@ void print_row(Asked& asked, char letter, const std::string& name, const Layout&
   std::fflush(stdout);
 }
 
-std::vector<std::string> split(const std::string& words) {
-  std::vector<std::string> parts;
-  for (std::size_t from = 0; from <= words.size();) {
-    const std::size_t comma = std::min(words.find(',', from), words.size());
-    parts.push_back(words.substr(from, comma - from));
-    from = comma + 1;
-  }
-  return parts;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -256,7 +247,8 @@ int main(int argc, char** argv) {
   const bool chosen = argc > 2;
   const std::string heads = chosen ? argv[1] : kHeads;
   const std::vector<std::string> names =
-      chosen ? split(argv[2]) : std::vector<std::string>(std::begin(sim::kPatrols), std::end(sim::kPatrols));
+      chosen ? drivers::split(argv[2], ',')
+             : std::vector<std::string>(std::begin(sim::kPatrols), std::end(sim::kPatrols));
   const int seeds = argc > 3 ? std::atoi(argv[3]) : kSeeds;
   std::printf(
       "seconds until a person is in the picture: median of %d seeds, and nine of ten; without a person: the "
