@@ -27,8 +27,9 @@ constexpr motion::Time kEarly = milliseconds(100), kStale = std::chrono::seconds
 constexpr motion::Time kHomePatience = std::chrono::seconds(60);
 // A request to the base is repeated this often. derived: five times in the half second that it holds
 constexpr motion::Time kAskAgain = milliseconds(100);
-// A picture that is repeated for longer is too old to predict from. derived: as long as TargetFilter bridges
-constexpr motion::Time kLongestBlind = milliseconds(500);
+// A picture that is repeated for longer is too old to predict from.
+constexpr auto kLongestBlind =
+    std::chrono::duration_cast<motion::Time>(std::chrono::duration<double>(TargetFilter::kPause));
 constexpr auto kTickPatience = milliseconds(10);
 // This is long because results must not depend on the load of the machine; a state change interrupts the wait.
 constexpr auto kFramePatience = std::chrono::seconds(10);
