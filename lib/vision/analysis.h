@@ -16,7 +16,7 @@
 #include "vision/background/foreground_mask.h"
 #include "vision/burnt_in/burnt_in_boxes.h"
 #include "vision/change/three_frame_difference.h"
-#include "vision/detection/regions.h"
+#include "vision/detection/region.h"
 #include "vision/ego_motion/camera_motion.h"
 #include "vision/image/image.h"
 #include "vision/tracking/tracker.h"

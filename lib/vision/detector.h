@@ -10,6 +10,7 @@
 #include "vision/analysis.h"
 #include "vision/burnt_in/burnt_in.h"
 #include "vision/detection/limits.h"
+#include "vision/detection/regions.h"
 #include "vision/duplicate_frames.h"
 #include "vision/geometry/box_edge.h"
 #include "vision/geometry/lens.h"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "counts.h"
-#include "vision/detection/regions.h"
+#include "vision/geometry/box.h"
 
 namespace cerberus::bench {
 

@@ -11,6 +11,7 @@
 
 #include "asked.h"
 #include "boxes.h"
+#include "vision/image/image.h"
 
 namespace cerberus::bench {
 

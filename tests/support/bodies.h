@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "vision/detection/regions.h"
+#include "vision/geometry/box.h"
 #include "vision/image/image.h"
 
 namespace cerberus::tests {

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "vision/detection/regions.h"
+#include "vision/detection/change.h"
 #include "vision/image/labelling.h"
 #include "vision/image/mask.h"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "vision/detection/people.h"
+#include "vision/detection/person.h"
 #include "vision/image/labelling.h"
 #include "vision/image/mask.h"
 

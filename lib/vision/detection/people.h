@@ -12,22 +12,10 @@
 
 #include "vision/detection/height_prior.h"
 #include "vision/detection/people_kernels.h"
-#include "vision/detection/regions.h"
+#include "vision/detection/person.h"
 #include "vision/image/mask.h"
 
 namespace cerberus::vision {
-
-// Part of the picture: columns and rows from (left, top) up to but not including (right, bottom).
-struct Bounds {
-  int left = 0, top = 0, right = 0, bottom = 0;
-  int width() const { return right - left; }
-  int height() const { return bottom - top; }
-};
-
-struct Person {
-  Box box;           // of the body's height and usual width, its axis in the middle; may leave the picture
-  double score = 0;  // log-likelihood ratio a pixel of the body; about 1 for a whole person with a good mask
-};
 
 class PeopleFinder {
  public:

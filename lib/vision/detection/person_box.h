@@ -5,8 +5,9 @@
 #include <cstddef>
 #include <span>
 
-#include "vision/detection/people.h"
-#include "vision/detection/regions.h"
+#include "vision/detection/change.h"
+#include "vision/detection/person.h"
+#include "vision/image/mask.h"
 
 namespace cerberus::vision {
 

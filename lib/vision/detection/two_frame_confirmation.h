@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "vision/detection/regions.h"
+#include "vision/detection/region.h"
 #include "vision/geometry/transform.h"
 
 namespace cerberus::vision {

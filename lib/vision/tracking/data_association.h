@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "vision/detection/regions.h"
+#include "vision/detection/region.h"
 #include "vision/tracking/assignment.h"
 #include "vision/tracking/region_appearances.h"
 #include "vision/tracking/track_hypothesis.h"

@@ -17,7 +17,7 @@
 #include <optional>
 #include <span>
 
-#include "vision/detection/regions.h"
+#include "vision/detection/region.h"
 #include "vision/geometry/camera_orientation.h"
 #include "vision/tracking/track_hypothesis.h"
 #include "vision/tracking/tracker.h"

@@ -11,7 +11,7 @@
 #include <optional>
 #include <variant>
 
-#include "vision/detection/regions.h"
+#include "vision/detection/region.h"
 #include "vision/geometry/camera_orientation.h"
 #include "vision/geometry/transform.h"
 #include "vision/tracking/appearance_model.h"

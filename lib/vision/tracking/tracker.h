@@ -9,7 +9,7 @@
 #include <optional>
 #include <span>
 
-#include "vision/detection/regions.h"
+#include "vision/detection/region.h"
 #include "vision/geometry/camera_orientation.h"
 #include "vision/geometry/transform.h"
 #include "vision/tracking/appearance_model.h"
