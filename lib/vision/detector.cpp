@@ -6,7 +6,7 @@
 #include <cstring>
 #include <utility>
 
-#include "vision/parameters.h"
+#include "vision/detector_parameters.h"
 
 namespace cerberus::vision {
 

@@ -20,7 +20,7 @@
 
 namespace cerberus::vision {
 
-struct DetectorParameters;  // parameters.h
+struct DetectorParameters;  // detector_parameters.h
 
 struct DetectorOptions {
   int analysis_width = 320;  // pixels; 0: the frame's own width

@@ -61,7 +61,7 @@ std::optional<Options> read_options(int argc, char** argv) {
       if (std::ranges::min(options.widths) < 48) wrong = value + ": a width is a number of pixels from 48 on";
     } else if (name == "--set" && !value.empty()) {
       if (!options.numbers) options.numbers.emplace();
-      wrong = vision::set_number(*options.numbers, value);
+      wrong = set_number(*options.numbers, value);
     } else {
       wrong = name + " is no option, or has no value";
     }

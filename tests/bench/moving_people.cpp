@@ -3,7 +3,7 @@
 // tilt, zoom and shake (moving_view.h), three of each with different phases; means of the three, on the people as the window
 // cuts them.
 //
-//   bench-moving_people [--set STAGE.NAME=VALUE]...     other tuned numbers (vision/parameters.h); nothing is judged
+//   bench-moving_people [--set STAGE.NAME=VALUE]...     other tuned numbers (parameters.h); nothing is judged
 #include <gst/gst.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/parameters.h"
+#include "parameters.h"
 
 #include <algorithm>
 #include <charconv>
@@ -7,8 +7,10 @@
 #include <initializer_list>
 #include <utility>
 
-namespace cerberus::vision {
+namespace cerberus::bench {
 namespace {
+
+using namespace vision;
 
 // The numbers of one stage.
 class Numbers {
@@ -310,4 +312,4 @@ std::string set_number(DetectorParameters& parameters, std::string_view assignme
   return std::string(name) + " takes " + takes + ", not " + quoted(value) + names_like(all, name);
 }
 
-}  // namespace cerberus::vision
+}  // namespace cerberus::bench

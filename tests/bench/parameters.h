@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The tuned numbers of detection and tracking, as numbers with names: for sweeps (bench-quality --set).
+// Names of the tuned numbers of detection and tracking: for sweeps (bench-quality --set).
 #pragma once
 
 #include <string>
@@ -7,17 +7,9 @@
 #include <variant>
 #include <vector>
 
-#include "vision/detection/region_parameters.h"
-#include "vision/geometry/box_edge.h"
-#include "vision/tracking/tracking_parameters.h"
+#include "vision/detector_parameters.h"
 
-namespace cerberus::vision {
-
-struct DetectorParameters {
-  DetectionParameters detection;
-  TrackingParameters tracking;
-  BoxEdgeParameters edge;
-};
+namespace cerberus::bench {
 
 struct NamedNumber {
   std::string name;  // "stage.name", as "track.gate" or "people.head.reach"
@@ -25,11 +17,11 @@ struct NamedNumber {
   int least = 0;  // of a whole number: 1 where something is divided by it, or into as many
 };
 // All of them; they point into `parameters`.
-std::vector<NamedNumber> named_numbers(DetectorParameters& parameters);
+std::vector<NamedNumber> named_numbers(vision::DetectorParameters& parameters);
 
 // Sets one number. assignment: "stage.name=value"; the value is finite, a whole number at least as in NamedNumber and at
 // most a million. Returns what is wrong with it, with the names that there are, or nothing where the number is set; else
 // `parameters` is unchanged. Whether a number makes sense is not checked.
-std::string set_number(DetectorParameters& parameters, std::string_view assignment);
+std::string set_number(vision::DetectorParameters& parameters, std::string_view assignment);
 
-}  // namespace cerberus::vision
+}  // namespace cerberus::bench

@@ -4,7 +4,7 @@
 //
 // With arguments: `bench-quality "motiondetect closing=5" ...` measures these launch lines; `bench-quality --set
 // track.gate=3 --set people.price=0.5` the boxes and tracks of the library's detector with these tuned numbers
-// (vision/parameters.h). Masks depend on none of them.
+// (parameters.h). Masks depend on none of them.
 #include <cerberus/cerberus.h>
 
 #include <algorithm>
@@ -220,7 +220,7 @@ bool read_arguments(std::span<char*> arguments, vision::DetectorParameters& numb
     }
     const char* value = is_set && i + 1 < arguments.size() ? arguments[++i] : "";
     const std::string wrong =
-        is_set ? vision::set_number(numbers, value) : std::string(arguments[i]) + " is no option";
+        is_set ? set_number(numbers, value) : std::string(arguments[i]) + " is no option";
     if (!wrong.empty()) {
       std::fprintf(stderr, "%s\nbench-quality [--set STAGE.NAME=VALUE]... [LAUNCH LINE]...\n", wrong.c_str());
       return false;

@@ -72,7 +72,7 @@ bool parse_numbers(int argc, char** argv, vision::DetectorParameters& numbers) {
   for (int i = 1; i < argc; i += 2) {
     const bool is_set = std::strcmp(argv[i], "--set") == 0 && i + 1 < argc;
     const std::string wrong =
-        is_set ? vision::set_number(numbers, argv[i + 1]) : std::string(argv[i]) + " is no option";
+        is_set ? set_number(numbers, argv[i + 1]) : std::string(argv[i]) + " is no option";
     if (wrong.empty()) continue;
     std::fprintf(stderr, "%s\nusage: %s [--set STAGE.NAME=VALUE]...\n", wrong.c_str(), argv[0]);
     return false;

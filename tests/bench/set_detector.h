@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// vision::Detector as motiondetect uses it, but for its tuned numbers (vision/parameters.h).
+// vision::Detector as motiondetect uses it, but for its tuned numbers (parameters.h).
 #pragma once
 
 #include <gst/gst.h>
@@ -8,10 +8,11 @@
 #include <functional>
 #include <vector>
 
+#include "parameters.h"
 #include "people_sequences.h"
 #include "vision/detector.h"
+#include "vision/detector_parameters.h"
 #include "vision/frame_history.h"
-#include "vision/parameters.h"
 
 namespace cerberus::bench {
 

@@ -4,7 +4,7 @@
 // and mirrored, and the means count: with them numbers should be chosen. What the sequences give as they are, which is what
 // is asked for, is measured by bench-quality and bench-fit.
 //
-//   bench-variants [--set STAGE.NAME=VALUE]...     other tuned numbers (vision/parameters.h); judged by the one who looks
+//   bench-variants [--set STAGE.NAME=VALUE]...     other tuned numbers (parameters.h); judged by the one who looks
 #include <gst/gst.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The names of tuned numbers: all of them are there, and each sets its own.
-#include "vision/parameters.h"
+#include "bench/parameters.h"
 
 #include <check.h>
 
@@ -10,9 +10,11 @@
 #include <utility>
 
 #include "support/suite.h"
+#include "vision/detection/regions.h"
 #include "vision/tracking/tracker.h"
 
 using namespace cerberus::vision;
+using namespace cerberus::bench;
 
 namespace {
 
