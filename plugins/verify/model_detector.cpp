@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "vision/verification/network_output.h"
-#include "vision/verification/onnx_file.h"
+#include "vision/persons/network_output.h"
+#include "vision/persons/onnx_file.h"
 
 namespace cerberus::plugin {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "vision/verification/person_detector.h"
+#include "vision/persons/person_detector.h"
 
 namespace cerberus::plugin {
 

@@ -85,9 +85,10 @@ VISION = {
     'vision/background': ('vision/components',),
     'vision/burnt_in': ('vision/geometry',),
     'vision/detection': ('vision/geometry',),
+    'vision/persons': ('vision/geometry',),
     'vision/zones': ('vision/geometry',),
     'vision/tracking': ('vision/detection',),
-    'vision/verification': ('vision/tracking',),
+    'vision/verification': ('vision/tracking', 'vision/persons'),
 }
 ARROWS = VISION | {
     'text': (),

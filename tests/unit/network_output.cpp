@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Outputs of networks, made by hand in the layouts that export tools write: a person, a car, and boxes with low scores.
-#include "vision/verification/network_output.h"
+#include "vision/persons/network_output.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Small ONNX models, written by hand: what is read from their files, and what is written anew in them.
-#include "vision/verification/onnx_file.h"
+#include "vision/persons/onnx_file.h"
 
 #include <array>
 #include <random>

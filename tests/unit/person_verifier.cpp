@@ -12,6 +12,7 @@
 
 #include "support/allocations.h"
 #include "support/suite.h"
+#include "vision/verification/hit_merging.h"
 #include "vision/verification/look_worker.h"
 #include "vision/verification/patch_matching.h"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "vision/verification/hit_merging.h"
 #include "vision/verification/person_verifier.h"
 
 namespace cerberus::vision {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "vision/verification/look_schedule.h"
-#include "vision/verification/person_detector.h"
+#include "vision/persons/person_detector.h"
 
 namespace cerberus::vision {
 

@@ -16,7 +16,7 @@
 #include "vision/verification/followed_person.h"
 #include "vision/verification/height_line.h"
 #include "vision/verification/look_schedule.h"
-#include "vision/verification/person_detector.h"
+#include "vision/persons/person_detector.h"
 #include "vision/verification/verification_parameters.h"
 
 namespace cerberus::vision {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/verification/onnx_file.h"
+#include "vision/persons/onnx_file.h"
 
 #include <algorithm>
 #include <string_view>

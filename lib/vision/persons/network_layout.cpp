@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/verification/network_layout.h"
+#include "vision/persons/network_layout.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/verification/network_output.h"
+#include "vision/persons/network_output.h"
 
 #include <algorithm>
 #include <cmath>

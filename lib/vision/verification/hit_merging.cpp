@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/verification/person_detector.h"
+#include "vision/verification/hit_merging.h"
 
 #include <algorithm>
 #include <tuple>

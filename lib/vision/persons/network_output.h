@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "vision/verification/network_layout.h"
-#include "vision/verification/person_detector.h"
+#include "vision/persons/network_layout.h"
+#include "vision/persons/person_detector.h"
 
 namespace cerberus::vision {
 

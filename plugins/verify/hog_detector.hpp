@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// OpenCV's pedestrian detectors: histograms of oriented gradients and a linear SVM (Dalal and Triggs, CVPR 2005). The
+// weights are compiled into OpenCV: no file is needed.
+#pragma once
+
+#include <memory>
+
+#include "vision/persons/body_boxes.h"
+#include "vision/persons/person_detector.h"
+
+namespace cerberus::plugin {
+
+enum class HogWeights {
+  daimler,  // window of 48x96 pixels, trained on the Daimler pedestrian data set (Enzweiler and Gavrila 2009)
+  inria,    // OpenCV's default people detector: 64x128 pixels, trained on INRIA's persons
+};
+
+// How the picture is scanned.
+struct HogScan {
+  double threshold = 0;      // score of the SVM, below which a window is no hit
+  double scale_step = 1.07;  // from one scale of the pyramid to the next
+  // Pixels around the picture that windows reach, a multiple of 8: a window is wider and higher than the person in it.
+  int padding = 16;
+  // The part of the window that becomes a hit's box.
+  vision::BodyShare share{};
+};
+
+std::unique_ptr<vision::PersonDetector> make_hog_detector(HogWeights weights, const HogScan& scan);
+
+// Of a window. Geometry of the training windows; measured alike on all sequences (the default detector's bodies: .73 to .79
+// high).
+constexpr vision::BodyShare body_share(HogWeights weights) {
+  return weights == HogWeights::daimler ? vision::BodyShare{0.52, 0.82} : vision::BodyShare{0.48, 0.76};
+}
+
+// Lines of a whole frame that is scanned: bodies from 79 (Daimler) or 97 lines on are found, a fifth of the frame. Chosen:
+// 85 to 146 ms a look; 720 lines take a core at 4 looks a second.
+constexpr int kWholeFrameLines = 480;
+
+}  // namespace cerberus::plugin
