@@ -173,7 +173,14 @@ void Detector::find_regions(Analysis& record, const DetectorFrame& frame) {
 }
 
 void Detector::track(Analysis& record, const DetectorFrame& frame, std::span<const Region> regions) {
-  if (frame.fresh) tracker_.reset();
+  if (frame.fresh) {
+    tracker_.reset();
+    calm_.reset();
+  } else if (record.camera) {
+    calm_.add(record.camera->corners, tracked_, frame.size, frame.seconds);
+    record.camera.stored().calm = calm_.share();
+  }
+  tracked_.clear();
   const Lens lens = frame.lens(options_.field_of_view);
   std::optional<CameraOrientation> orientation;
   if (frame.look && lens.known()) orientation = {lens, frame.look->pan, frame.look->tilt};
@@ -191,6 +198,7 @@ void Detector::track(Analysis& record, const DetectorFrame& frame, std::span<con
     track.bearing = place.bearing;
     track.distance = place.distance;
     out.push_back(track);
+    tracked_.push_back(track.box);
   }
 }
 

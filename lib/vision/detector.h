@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "vision/analysis.h"
 #include "vision/burnt_in/burnt_in.h"
@@ -140,6 +141,8 @@ class Detector {
   Zones zones_;
   bool zones_placed_ = false;
   Tracker tracker_;
+  SceneCalm calm_;
+  std::vector<Box> tracked_;  // the tracks' boxes of the last frame
   BoxEdgeParameters edge_;
   Size foreground_size_, regions_size_;
   Sequence differences_sequence_, foreground_sequence_, regions_sequence_;

@@ -4,9 +4,10 @@
 //
 //   bench-development [--widths 300,320,344] [--only NAME,NAME] [--set STAGE.NAME=VALUE]...
 //   bench-development [--widths 320] [--only NAME,NAME] --elements "motiondetect ! personverify"
+//   bench-development [--widths 320] [--only NAME,NAME] --calm yes
 //
 // --set: prints also, for each kind of sequence, the mean difference to the usual numbers, paired by run, with its standard
-// error over sequences. --elements: measures a launch line, in which motiondetect has the width. With no argument: widths 320,
+// error over sequences. --calm: prints how calm the scenes are instead. --elements: measures a launch line, in which motiondetect has the width. With no argument: widths 320,
 // judged.
 #include <gst/gst.h>
 
@@ -30,12 +31,14 @@ using namespace cerberus::bench;
 namespace {
 
 // Seen: .40, .67 and .36; 52 identities a minute. A change that costs more than this is no accident.
+constexpr double kCalm = .8;  // share of the corners; see SceneCalm
 constexpr double kMota = .37, kIdf1 = .65, kRecall = .34, kIdentities = 60;
 
 struct Options {
   std::vector<int> widths{320};  // analysis pixels
   std::vector<std::string> only;
   std::string elements;
+  bool calm = false;
   std::optional<vision::DetectorParameters> numbers;
 };
 
@@ -55,6 +58,8 @@ std::optional<Options> read_options(int argc, char** argv) {
       options.only = parts(value);
     } else if (name == "--elements" && !value.empty()) {
       options.elements = value;
+    } else if (name == "--calm" && value == "yes") {
+      options.calm = true;
     } else if (name == "--widths" && !value.empty()) {
       options.widths.clear();
       for (const std::string& width : parts(value)) options.widths.push_back(std::atoi(width.c_str()));
@@ -150,6 +155,31 @@ std::vector<Runs> measure_elements(const DevelopmentSequence& sequence, const st
   return {runs};
 }
 
+// Prints how calm the scene is: median over the frames of all runs, and the share of them in which it is at least kCalm.
+bool print_calm(const DevelopmentSequence& sequence, const std::vector<int>& widths) {
+  std::vector<double> shares;
+  for (const int width : widths)
+    for (const bool mirrored : {false, true}) {
+      SetDetector detector({}, width);
+      Mirror mirror;
+      if (!for_each_sample(
+              sequence.source +
+                  " ! videoconvert ! video/x-raw,format=I420 ! appsink name=out sync=false max-buffers=4",
+              [&](GstSample* sample, int) {
+                detector.find(sample, mirrored ? SetDetector::View(std::ref(mirror)) : SetDetector::View());
+                shares.push_back(detector.calm());
+              }))
+        return false;
+    }
+  if (shares.empty()) return false;
+  const auto calm = std::ranges::count_if(shares, [](double share) { return share >= kCalm; });
+  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
+  std::ranges::nth_element(shares, middle);
+  std::printf("  %-32s  median %.2f  calm in %.2f of the frames\n", sequence.name.c_str(), *middle,
+              static_cast<double>(calm) / static_cast<double>(shares.size()));
+  return true;
+}
+
 Figures mean(const Runs& runs) {
   Figures sum{};
   for (const Figures& f : runs)
@@ -206,6 +236,10 @@ int main(int argc, char** argv) {
   for (const DevelopmentSequence& sequence : development_sequences(*data)) {
     if (!options->only.empty() && std::ranges::find(options->only, sequence.name) == options->only.end())
       continue;
+    if (options->calm) {
+      measured = print_calm(sequence, options->widths) && measured;
+      continue;
+    }
     const auto runs = options->elements.empty()
                           ? measure_numbers(sequence, options->widths, numbers)
                           : measure_elements(sequence, options->widths, options->elements);

@@ -57,6 +57,7 @@ std::vector<Found> SetDetector::find(GstSample* sample, const View& view) {
   history_ = history;
   number_ = frame.number;
   detector_.run(*record, frame);
+  calm_ = record->camera->calm;
   tracks_.assign(record->tracks->begin(), record->tracks->end());
   return found();
 }

@@ -27,6 +27,8 @@ class SetDetector {
 
   // What is found on an I420 frame, or in what `view` makes of its luma plane; nothing where it cannot be read.
   std::vector<Found> find(GstSample* sample, const View& view = {});
+  // How calm the scene was in the last picture: CameraMotionResult::calm.
+  double calm() const { return calm_; }
 
  private:
   std::vector<Found> found() const;
@@ -36,6 +38,7 @@ class SetDetector {
   vision::FrameHistory history_;
   std::vector<vision::Track> tracks_;  // of the last picture
   std::uint64_t number_ = 0;
+  double calm_ = 1;
 };
 
 // Reads `--set STAGE.NAME=VALUE`, any number of times, from the arguments behind the program's name. Prints what is wrong

@@ -284,8 +284,9 @@ std::optional<CameraMotionResult> CameraMotion::State::confirm_still() {
       !is_known(matches.samples(), fit))
     return std::nullopt;
   measure_noise(matches);
-  next_reference(true);
   CameraMotionResult result;
+  result.corners = matches.corners({}, size);
+  next_reference(true);
   result.scene_age = ++scene_age;
   result.confidence = share.all;
   result.residual = rate_motion(matches.samples(), {}).residual;
@@ -344,6 +345,7 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   result.confidence = known ? share.all : 0;
   result.residual = fit.residual;
   result.still = still;
+  result.corners = matches.corners(fit.transform, size);
   next_reference(still);
   return result;
 }

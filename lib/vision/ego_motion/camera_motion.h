@@ -8,6 +8,7 @@
 #include <span>
 
 #include "vision/ego_motion/motion_fit.h"
+#include "vision/ego_motion/scene_calm.h"
 #include "vision/geometry/box.h"
 #include "vision/geometry/transform.h"
 #include "vision/image/image.h"
@@ -27,6 +28,8 @@ struct CameraMotionResult {
   bool still = false;   // the camera stands: the transform is exactly identity
   int scene_age =
       0;  // number of frames of this scene, this one included: 1 = no predecessor (start, reset, cut)
+  SceneCorners corners;  // and whether they follow the transform
+  double calm = 1;       // see SceneCalm::share(); filled by Detector::track(), which knows what is no scene
 };
 
 // Estimates the camera's motion from one analysis picture a frame. Keeps a small pyramid of an earlier picture, and no

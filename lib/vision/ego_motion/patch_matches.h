@@ -7,6 +7,7 @@
 #include <span>
 
 #include "vision/ego_motion/patches.h"
+#include "vision/ego_motion/scene_calm.h"
 #include "vision/image/pyramid.h"
 
 namespace cerberus::vision {
@@ -37,6 +38,9 @@ class PatchMatches {
     double well = 0;  // the same, each patch weighted by the quality of its match
   };
   Share share_of(const MotionFit& fit) const;
+  // Returns the patches whose place is sure, as corners of the scene: those with the lowest variance, whether or not they
+  // follow a motion.
+  SceneCorners corners(const Transform& motion, Size picture) const;
   // Returns the standard deviation of a pixel in grey levels, from the residuals of the third with the lowest ones;
   // nullopt with too few matches.
   std::optional<double> noise() const;
@@ -51,7 +55,8 @@ class PatchMatches {
   std::array<PatchMatch, MotionSamples::kMax> matches_;
   int looked_for_ = 0;  // patches whose place lies in the current picture
   MotionSamples samples_;
-  std::array<float, MotionSamples::kMax> correlations_;  // of the samples
+  std::array<float, MotionSamples::kMax> correlations_,
+      variances_;  // of the samples; the larger variance by noise
 };
 
 }  // namespace cerberus::vision

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// How calm a scene is: the share of its corners that the camera's motion explains. Where depth (parallax), blur or a shaken
+// lens move many of them otherwise, registration leaves edges over, and moving regions are not to be trusted.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "vision/ego_motion/motion_fit.h"
+#include "vision/geometry/box.h"
+#include "vision/image/image.h"
+
+namespace cerberus::vision {
+
+// The corners of one frame whose place in the next one is sure. Not only those from which the motion was estimated.
+struct SceneCorners {
+  struct Corner {
+    std::uint8_t x, y;  // in the earlier frame, 256ths of the picture's sides
+    bool fits;          // the motion explains its place to half a pixel of a picture 320 wide
+  };
+  float reach = 0;  // of the picture's width: half the side of what is seen of a corner
+  int count = 0;
+  std::array<Corner, MotionSamples::kMax> corner;
+};
+
+class SceneCalm {
+ public:
+  // The next frame begins a scene.
+  void reset() { *this = {}; }
+  // objects: the tracks' boxes in the earlier frame, of this size in pixels; corners that they touch do not count. seconds:
+  // since that frame (<= 0: unknown, the last known distance is used).
+  void add(const SceneCorners& corners, std::span<const Box> objects, Size frame, double seconds);
+  // Share of the corners outside the objects that fit, mean of about a second (of the scene, while it is younger), 0..1.
+  // Frames with few such corners do not count; 1 before the first that does: nothing speaks against the scene.
+  double share() const { return share_; }
+
+ private:
+  double share_ = 1;
+  double measured_ = 0;  // seconds that it is the mean of
+  double step_ = 0.04;   // seconds between frames, until a distance is known
+};
+
+}  // namespace cerberus::vision
