@@ -72,7 +72,7 @@ void HeadController::open(std::unique_ptr<drivers::HeadRunner> runner, const dri
   tilt_speeds_.reset(setup.tilt_speeds, setup.limits.tilt.speed);
   base_yaw_.reset();
   taken_.reset();
-  zoom_.begin(setup.zoom_table);
+  zoom_.begin(setup.moves_zoom ? setup.zoom_table : motion::ZoomTable{});
   base_request_.end();
   base_asked_ = 0;
   watchdog_.rest();
@@ -110,7 +110,6 @@ void HeadController::set_options(const control::LawOptions& law, const fusion::F
                                  Time watchdog) {
   const std::lock_guard guard(lock_);
   law_.set_options(law);
-  zoom_.set_on(law.keep_size);
   confine_law();
   selector_.set_options(fuser);
   timeout_ = watchdog;

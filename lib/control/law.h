@@ -24,7 +24,6 @@ struct LawOptions {
   double base_turn = 0;  // radians a second that the base may be asked for; 0: it is not asked
   double turn_speed = sensing::radians(40);  // radians a second, for searching and returning
   Response response = Response::normal;
-  bool keep_size = false;  // the zoom keeps a target at a third of the picture's height: zoom_control.h
   // Of FollowedAxis::Parameters.
   double gain = FollowedAxis::Parameters{}.gain;
   double dead_band_start = FollowedAxis::Parameters{}.dead_band_start;  // never less than dead_band_stop

@@ -72,7 +72,8 @@ const Property<HeadSettings> kProperties[] = {
     property(
         "keep-size", &HeadSettings::keep_size,
         "The zoom slowly keeps a followed person at a third of the picture's height: of a visca, pelco-d "
-        "(feedback), onvif, v4l2, external or simulated head with a zoom-table"),
+        "(feedback), onvif, v4l2, external or simulated head with a zoom-table")
+        .read_at_start(),
     property("helper-timeout", &HeadSettings::helper_timeout,
              "Nanoseconds of silence, 1 ms to 10 s, after which the helper process of a real head stops it")
         .read_at_start(),
@@ -172,8 +173,7 @@ control::LawOptions law_options(const HeadSettings& s) {
   return {.limits = head_limits(s),
           .base_turn = radians(s.base_turn),
           .turn_speed = radians(s.turn_speed),
-          .response = static_cast<control::Response>(s.response),
-          .keep_size = s.keep_size};
+          .response = static_cast<control::Response>(s.response)};
 }
 
 fusion::FuserOptions fuser_options(const HeadSettings& s) {

@@ -55,6 +55,7 @@ ProjectLaw::ProjectLaw(const sim::HeadKind& kind, sim::PanHead& machine, const s
       field_of_view_(camera.field_of_view) {
   pixel_turn_ = control::base_turn(vision::Transform::translation(-1, 0), lens_, kPicture, {}, {}).yaw;
   drivers::HeadSetup setup = setup_for(kind, machine);
+  setup.moves_zoom = lens != nullptr;
   if (lens) must(setup.zoom_table.parse("0 60; 1 4").empty(), "the zoom's table is none");
   auto head = std::make_unique<LineHead>(kind, machine, lens, setup.zoom_table);
   head_ = head.get();
@@ -64,7 +65,6 @@ ProjectLaw::ProjectLaw(const sim::HeadKind& kind, sim::PanHead& machine, const s
   controller_.open(std::move(runner), setup);
   controller_.set_clock_driven(true);
   control::LawOptions options;
-  options.keep_size = lens != nullptr;
   options.base_turn = kBaseTurn;
   controller_.set_options(options, {}, milliseconds(500));
   controller_.set_limits(setup.limits, std::nullopt);

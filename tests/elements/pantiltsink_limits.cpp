@@ -240,11 +240,11 @@ GST_START_TEST(a_driver_that_refuses_limits_is_warned_of) {
 GST_END_TEST
 
 GST_START_TEST(what_is_read_at_the_start_says_so) {
-  const std::vector<std::string> start{"zoom-table",     "lock-zoom",  "base-gyro", "calibration",
-                                       "camera-name",    "command",    "device",    "device-options",
-                                       "helper-timeout", "driver",     "head",      "script",
-                                       "start-pan",      "start-tilt", "latency",   "step-size",
-                                       "backlash",       "noise",      "seed"};
+  const std::vector<std::string> start{"zoom-table",     "keep-size",      "lock-zoom",  "base-gyro",
+                                       "calibration",    "camera-name",    "command",    "device",
+                                       "device-options", "helper-timeout", "driver",     "head",
+                                       "script",         "start-pan",      "start-tilt", "latency",
+                                       "step-size",      "backlash",       "noise",      "seed"};
   GstElement* element = gst_element_factory_make("pantiltsink", nullptr);
   guint count = 0;
   GParamSpec** specs = g_object_class_list_properties(G_OBJECT_GET_CLASS(element), &count);

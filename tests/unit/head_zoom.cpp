@@ -61,13 +61,12 @@ struct Rig {
   explicit Rig(bool keeps = true, const char* table = "0 60; 1 6") {
     drivers::HeadSetup setup;
     ck_assert(setup.zoom_table.parse(table).empty());
+    setup.moves_zoom = keeps;
     auto runner = std::make_unique<HeadRunner>(std::make_unique<RecordedHead>(record), nullptr);
     runner->open(setup, 10s);
     controller.open(std::move(runner), setup);
     controller.set_clock_driven(true);
-    LawOptions law;
-    law.keep_size = keeps;
-    controller.set_options(law, {}, 500ms);
+    controller.set_options({}, {}, 500ms);
     controller.resume(now, out);
   }
   struct Person {
@@ -128,7 +127,7 @@ START_TEST(a_person_of_a_sixth_is_brought_to_a_third) {
 END_TEST
 
 START_TEST(off_by_default_and_without_a_table_the_zoom_is_left_alone) {
-  ck_assert(!LawOptions{}.keep_size);
+  ck_assert(!drivers::HeadSetup{}.moves_zoom);
   ck_assert_int_eq(Rig(false).run(5s, {}), 0);
   Rig none(true, "");
   none.view = radians(60);

@@ -28,7 +28,7 @@ ZoomKeeper::Sight sight_of(const fusion::Track& track, const vision::Size& pictu
 std::optional<double> ZoomControl::on_frame(double taken, const Goal& goal,
                                             std::span<const fusion::Track> tracks,
                                             const vision::Size& picture, double field_of_view) {
-  if (!on_ || table_.empty() || picture.width <= 0 || picture.height <= 0) return std::nullopt;
+  if (table_.empty() || picture.width <= 0 || picture.height <= 0) return std::nullopt;
   std::optional<ZoomKeeper::Sight> sight;
   if (goal.action == fusion::Action::track) {
     if (std::exchange(track_, goal.track) != goal.track) keeper_.reset();

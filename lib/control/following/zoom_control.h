@@ -14,12 +14,11 @@ namespace cerberus::control {
 
 class ZoomControl {
  public:
-  // Of a head that is opened; an empty table: its zoom is left alone.
+  // Of a head that is opened. An empty table: its zoom is left alone.
   void begin(const motion::ZoomTable& table) {
     table_ = table;
     keeper_.reset();
   }
-  void set_on(bool on) { on_ = on; }
 
   // taken: of the frame, seconds. picture: its size, in which the tracks' boxes are. field_of_view: when it was taken, as in
   // motion::Pose. Returns the position for HeadCommand::zoom. A target that is only predicted is not seen.
@@ -30,7 +29,6 @@ class ZoomControl {
   motion::ZoomTable table_;
   ZoomKeeper keeper_;
   std::uint32_t track_ = 0;  // the last target
-  bool on_ = false;
 };
 
 }  // namespace cerberus::control
