@@ -54,7 +54,7 @@ Command Law::track(vision::Point target, const vision::Lens& lens, const Moment&
   if (!way_round_.leaves_behind(straight, limits)) way_round_.end();  // met on the other side
   FollowedAxis::Aim pan = pan_.observe(straight, moment.base, moment.times, parameters);
   FollowedAxis::Aim tilt = tilt_.observe(seen.elevation, {}, moment.times, parameters);
-  left_ = pan.position + pan.rate * moment.times.horizon();
+  left_ = {pan.position + pan.rate * moment.times.horizon(), moment.times.taken};
   command.target = {pan.position, pan.rate};
   if (!limits.holds(pan.position)) {
     if (goes_round(pan, moment)) {
@@ -106,7 +106,7 @@ Command Law::turn(double direction, const motion::Pose& ahead) const {
   return command;
 }
 
-Command Law::search(const sensing::Interval& sector, const motion::Pose& ahead) {
+Command Law::search(const sensing::Interval& sector, const Moment& moment) {
   if (!std::isfinite(sector.from) || !std::isfinite(sector.to)) return {};
   Command command;
   command.state = State::searching;
@@ -114,9 +114,11 @@ Command Law::search(const sensing::Interval& sector, const motion::Pose& ahead) 
   const double from = pan.clamp(std::min(sector.from, sector.to));
   const double to = pan.clamp(std::max(sector.from, sector.to));
   command.limited = from != std::min(sector.from, sector.to) || to != std::max(sector.from, sector.to);
-  const double position = ahead.pan.position;
+  const double position = moment.ahead.pan.position;
+  // A person who left longer ago may be anywhere.
+  if (left_ && moment.times.taken - left_->time > WayRound::Parameters{}.longest) left_.reset();
   if (last_ != fusion::Action::search)  // where the target left, else the nearer edge first
-    sweeping_right_ = left_ ? *left_ > position : to - position < position - from;
+    sweeping_right_ = left_ ? left_->pan > position : to - position < position - from;
   left_.reset();
   if (position >= to - kThere) sweeping_right_ = false;
   if (position <= from + kThere) sweeping_right_ = true;
@@ -128,7 +130,6 @@ Command Law::search(const sensing::Interval& sector, const motion::Pose& ahead) 
 Command Law::zero() {
   Command command;
   command.state = State::zeroing;
-  left_.reset();  // of long ago by the time at which a search begins
   command.pan = command.tilt = go(0, options_.turn_speed);
   return command;
 }
@@ -136,7 +137,6 @@ Command Law::zero() {
 Command Law::update(const Goal& goal, const vision::Lens& lens, const Moment& moment) {
   using fusion::Action;
   Command command;
-  const motion::Pose& ahead = moment.ahead;
   if (goal.action == Action::track && goal.target) {
     const bool other = std::exchange(track_, goal.track) != goal.track;
     if (other) {  // its motion is not that of the last one
@@ -149,11 +149,12 @@ Command Law::update(const Goal& goal, const vision::Lens& lens, const Moment& mo
     }
     command = track(*goal.target, lens, moment);
   } else if (const auto round = go_on_round(moment)) {
-    command = *round;
+    last_ = Action::hold;  // the goal begins when the turn is over
+    return *round;
   } else if (goal.action == Action::turn_left || goal.action == Action::turn_right) {
-    command = turn(goal.action == Action::turn_right ? 1 : -1, ahead);
+    command = turn(goal.action == Action::turn_right ? 1 : -1, moment.ahead);
   } else if (goal.action == Action::search) {
-    command = search(goal.sector, ahead);
+    command = search(goal.sector, moment);
   } else if (goal.action == Action::zero) {
     command = zero();
   }

@@ -78,14 +78,19 @@ class Law {
   bool goes_round(const FollowedAxis::Aim& pan, const Moment& moment);
   std::optional<Command> go_on_round(const Moment& moment);
   Command turn(double direction, const motion::Pose& ahead) const;
-  Command search(const sensing::Interval& sector, const motion::Pose& ahead);
+  Command search(const sensing::Interval& sector, const Moment& moment);
   Command zero();
 
   LawOptions options_;
   fusion::Action last_ = fusion::Action::hold;
   FollowedAxis pan_, tilt_;
   WayRound way_round_;
-  std::optional<double> left_;  // pan angle at which the last target left
+  // Where the last target left, and when it was seen last.
+  struct Left {
+    double pan = 0;   // angle
+    double time = 0;  // seconds
+  };
+  std::optional<Left> left_;
   std::uint32_t track_ = 0;
   bool sweeping_right_ = false;
 };

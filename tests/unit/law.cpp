@@ -179,6 +179,16 @@ START_TEST(a_search_begins_where_the_target_left) {
 }
 END_TEST
 
+START_TEST(no_search_begins_where_a_target_left_long_ago) {
+  for (const double later : {1., 10.}) {
+    Law law;
+    for (int k = 0; k < 25; ++k) law.update(person(pixel(20 + k)), kLens, moment(looking(0), k * .04));
+    const Goal goal{Action::search, {}, {radians(-20), radians(60)}};
+    assert_goes(law.update(goal, kLens, moment(looking(0), 1 + later)).pan, later < 8 ? 60 : -20, 40);
+  }
+}
+END_TEST
+
 START_TEST(a_search_stays_within_the_stops) {
   Law law;
   const Command command =
@@ -224,6 +234,17 @@ START_TEST(a_target_beyond_the_stop_is_watched_from_it_until_it_leaves_the_pictu
 }
 END_TEST
 
+START_TEST(a_search_after_the_way_round_begins_where_the_target_left) {
+  Law law;
+  ck_assert(law.update(person(pixel(30)), kLens, moment(looking(170))).round);
+  const Goal goal{Action::search, {}, {radians(-60), radians(60)}};
+  double time = 0;
+  while (law.update(goal, kLens, moment(looking(-20), time)).round) time += .1;
+  ck_assert_double_gt(time, 3);
+  assert_goes(law.update(goal, kLens, moment(looking(-20), time)).pan, 60, 40);
+}
+END_TEST
+
 START_TEST(absurd_options_are_replaced) {
   Law law;
   LawOptions options;
@@ -252,8 +273,9 @@ int main() {
               a_turn_of_the_base_is_taken_off_pan_and_not_off_tilt, another_person_begins_anew,
               the_dial_reaches_both_axes, turning_goes_at_full_speed_until_the_stop,
               a_search_goes_from_edge_to_edge_the_nearer_one_first, a_search_begins_where_the_target_left,
-              a_search_stays_within_the_stops, zero_returns_both_axes_and_hold_holds_them,
-              tracking_without_a_target_or_a_lens_is_holding,
+              no_search_begins_where_a_target_left_long_ago, a_search_stays_within_the_stops,
+              zero_returns_both_axes_and_hold_holds_them, tracking_without_a_target_or_a_lens_is_holding,
               a_target_beyond_the_stop_is_watched_from_it_until_it_leaves_the_picture,
-              absurd_options_are_replaced, steady_state_allocates_nothing});
+              a_search_after_the_way_round_begins_where_the_target_left, absurd_options_are_replaced,
+              steady_state_allocates_nothing});
 }
