@@ -23,6 +23,7 @@ constexpr cerberus::Field kFields[] = {
     {"decided", Type::time, offsetof(CerberusFusion, decided)},
     {"head", Type::word, offsetof(CerberusFusion, head)},
 };
+constexpr cerberus::Field kImmediate[] = {{"immediate", Type::flag, offsetof(CerberusFusion, immediate)}};
 
 void hold(CerberusFusion& fusion) {
   fusion.rule_name = g_intern_static_string("none");
@@ -41,11 +42,13 @@ CerberusFusion sane(CerberusFusion fusion) {
 void write(GstStructure* to, const CerberusFusion& fusion) {
   const CerberusFusion written = sane(fusion);
   cerberus::write_fields(to, kFields, &written);
+  cerberus::write_fields(to, kImmediate, &written);
   cerberus::write_sensors(to, written.n_sensors, written.sensors, written.bearings);
 }
 
 bool read(const GstStructure* from, CerberusFusion& fusion) {
   if (!cerberus::read_fields(from, kFields, &fusion)) return false;
+  cerberus::read_known_fields(from, kImmediate, &fusion);
   cerberus_fusion_set_head(&fusion, fusion.head);
   return cerberus::read_sensors(from, fusion.n_sensors, fusion.sensors, fusion.bearings);
 }
@@ -60,7 +63,7 @@ template <typename Archive>
 static void exchange(Archive& archive, CerberusFusion& f) {
   archive(f.rule, f.rule_name, f.action, f.target, f.pan, f.sector_from, f.sector_to, f.limited,
           f.camera_found, f.n_sensors, f.sensors, f.bearings, f.doubtful,
-          cerberus::publish::Moment{f.decided}, f.head);
+          cerberus::publish::Moment{f.decided}, f.head, f.immediate);
   f = sane(f);
 }
 

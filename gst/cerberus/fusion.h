@@ -15,7 +15,7 @@ G_BEGIN_DECLS
  * running time is the frame's, or that of a decision made between two frames), `rule` (int), `rule-name` (string),
  * `action` (#CerberusFusionAction), `target` (uint), `pan`, `sector-from`, `sector-to` (double, degrees), `limited`,
  * `camera-found` (boolean), `sensors` (array of int: 0, 1, 2 = invalid), `bearings` (array of double, degrees, one a
- * sensor), `doubtful` (uint, one bit a sensor), `decided` (uint64), `head` (string).
+ * sensor), `doubtful` (uint, one bit a sensor), `decided` (uint64), `head` (string), `immediate` (boolean; missing: no).
  */
 #define CERBERUS_MESSAGE_FUSION "cerberus-fusion"
 
@@ -67,6 +67,8 @@ typedef enum {
  * @decided: running time up to which the sensors' readings were used: of two decisions the later one counts;
  *     %GST_CLOCK_TIME_NONE if it is not known
  * @head: name of the head that a %CERBERUS_EVENT_FUSION is for; interned, not to be freed; %NULL: any
+ * @immediate: %CERBERUS_FUSION_HOLD or %CERBERUS_FUSION_ZERO ends at once what the head does by itself, as the way round to
+ *     a person behind it; so do rules of a table that say hold or zero
  *
  * What camera and PIR sensors together decided for a frame.
  */
@@ -84,9 +86,10 @@ typedef struct _CerberusFusion {
   guint doubtful;
   GstClockTime decided;
   const gchar* head;
+  gboolean immediate;
 
   /*< private >*/
-  gpointer _cerberus_reserved[GST_PADDING];
+  gpointer _cerberus_reserved[GST_PADDING - 1];
 } CerberusFusion;
 
 #define CERBERUS_TYPE_FUSION (cerberus_fusion_get_type())

@@ -137,6 +137,7 @@ Command Law::zero() {
 Command Law::update(const Goal& goal, const vision::Lens& lens, const Moment& moment) {
   using fusion::Action;
   Command command;
+  if (goal.immediate) way_round_.end();
   if (goal.action == Action::track && goal.target) {
     const bool other = std::exchange(track_, goal.track) != goal.track;
     if (other) {  // its motion is not that of the last one

@@ -36,6 +36,7 @@ struct Goal {
   std::optional<vision::Point> target;  // of Action::track, frame pixels; none: hold
   sensing::Interval sector{0, 0};       // of Action::search, pan angles
   std::uint32_t track = 0;              // the target's; another one begins anew
+  bool immediate = false;               // it ends a way round
 };
 
 enum class State : std::uint8_t { holding, tracking, turning, searching, zeroing };

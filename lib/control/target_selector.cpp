@@ -25,6 +25,7 @@ TargetSelector::Selection selection_of(const fusion::Decision& decision,
   TargetSelector::Selection selection;
   selection.goal.action = decision.action;
   selection.goal.sector = decision.sector;
+  selection.goal.immediate = decision.immediate;
   if (decision.action == fusion::Action::track) {
     selection.goal.target = middle_of(tracks, decision.target);
     selection.goal.track = decision.target;

@@ -39,7 +39,7 @@ void Decisions::apply_choice(Decision& decision) const {
   decision.rule_name = kChosen;
   decision.target = here ? choice_.id() : 0;
   decision.sector = {kUnknown, kUnknown};
-  decision.limited = false;
+  decision.limited = decision.immediate = false;
 }
 
 Interval Decisions::limits() const {

@@ -260,9 +260,12 @@ Decision Fuser::State::by_table(const Input& input, Decision next) {
         next.rule = 0;
         next.rule_name = "return";
         next.limited = false;
+      } else {
+        next.immediate = true;
       }
       break;
     case Action::hold:
+      next.immediate = true;
       break;
   }
   return next;
@@ -287,7 +290,7 @@ Decision Fuser::State::decide(const Input& input) {
     next.action = Action::hold;
     next.rule = 0;
     next.rule_name = "stopped";
-    next.limited = false;
+    next.limited = next.immediate = false;
   }
   return next;
 }
@@ -351,7 +354,7 @@ const Decision& Fuser::update(const Input& input) {
                        !same(next.sector.from, old.sector.from) || !same(next.sector.to, old.sector.to) ||
                        next.limited != old.limited || next.camera_found != old.camera_found ||
                        next.fired != old.fired || next.doubtful != old.doubtful ||
-                       next.invalid != old.invalid;
+                       next.invalid != old.invalid || next.immediate != old.immediate;
   state.decision = next;
   state.decision.changed = changed;
   return state.decision;

@@ -76,6 +76,7 @@ struct Decision {
   SensorBits doubtful =
       0;  // read 1 perhaps because of the base's own motion (sensing/own_motion.h): not counted
   SensorBits invalid = 0;  // read 2: not counted
+  bool immediate = false;  // a table's rule says hold or zero: it ends what the head does by itself
   bool changed =
       false;  // rule, action, target, sector, limited, camera_found, or a sensor differs from last frame
 };

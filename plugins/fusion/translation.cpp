@@ -38,6 +38,7 @@ CerberusFusion as_fusion(const fusion::Decisions::Outcome& outcome) {
   std::transform(moment.bearings.begin(), moment.bearings.begin() + static_cast<std::ptrdiff_t>(moment.count),
                  std::begin(fusion.bearings), rounded_degrees);
   fusion.doubtful = decision.doubtful;
+  fusion.immediate = decision.immediate;
   fusion.decided = clock_time(outcome.decided);
   return fusion;
 }

@@ -157,6 +157,7 @@ control::FusionDecision from_c(const CerberusFusion& fusion) {
   decision.made.rule = fusion.rule;
   decision.made.rule_name = fusion.rule_name;
   decision.made.target = fusion.target;
+  decision.made.immediate = fusion.immediate;
   decision.made.sector = {sensing::radians(fusion.sector_from), sensing::radians(fusion.sector_to)};
   if (GST_CLOCK_TIME_IS_VALID(fusion.decided)) decision.decided = time_of(fusion.decided);
   return decision;

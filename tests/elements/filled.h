@@ -58,6 +58,7 @@ inline CerberusFusion searching() {
   fusion.bearings[1] = -120;
   fusion.bearings[2] = 120.5;
   fusion.doubtful = 0b100;
+  fusion.immediate = TRUE;
   return fusion;
 }
 
@@ -80,6 +81,7 @@ inline void assert_same(const CerberusFusion& a, const CerberusFusion& b) {
     fail_unless(a.bearings[i] == b.bearings[i]);
   }
   fail_unless_equals_int(a.doubtful, b.doubtful);
+  fail_unless_equals_int(a.immediate, b.immediate);
 }
 
 }  // namespace filled

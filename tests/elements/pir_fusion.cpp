@@ -231,6 +231,11 @@ START_TEST(a_fusion_message_tells_the_whole_decision) {
     gst_structure_remove_field(gst_message_writable_structure(message), field);
     fail_if(cerberus_message_parse_fusion(message), "without %s", field);
   }
+  // One that was written before there was the field.
+  g_autoptr(GstMessage) old = cerberus_message_new_fusion(nullptr, nullptr, &fusion);
+  gst_structure_remove_field(gst_message_writable_structure(old), "immediate");
+  g_autoptr(CerberusFusion) back = cerberus_message_parse_fusion(old);
+  fail_unless(back && !back->immediate);
 }
 END_TEST
 

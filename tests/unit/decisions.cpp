@@ -124,6 +124,7 @@ START_TEST(the_chosen_track_is_the_decision_from_the_next_frame_on_until_it_is_g
   stream.decisions.choose(9);
   const Decision chosen = frame(1080ms, 2);
   ck_assert(chosen.action == Action::track && chosen.target == 9 && chosen.rule == 0);
+  ck_assert(!chosen.immediate);
   ck_assert(chosen.rule_name == "chosen" && chosen.changed && chosen.camera_found);
   ck_assert(!frame(1120ms, 2).changed);
   // A sensor does not take the head from it between two frames.

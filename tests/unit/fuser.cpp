@@ -226,6 +226,49 @@ START_TEST(a_table_turns_no_further_than_the_stop) {
 }
 END_TEST
 
+// What a rule does only because it has no target, and what is deferred, is not what the rule says.
+START_TEST(a_tables_hold_and_zero_are_immediate) {
+  const RuleTable table{
+      .name = "mine",
+      .sensors = 1,
+      .precedence = Precedence::order,
+      .rules = {{.number = 1, .name = "stay", .all = 1, .bands = {{.action = Action::hold}}},
+                {.number = 2, .name = "follow", .camera = Camera::found, .bands = {{}}},
+                {.number = 3, .name = "home", .bands = {{.action = Action::zero}}}}};
+  Stream stream(FuserOptions{.rules = RuleSet::table});
+  stream.fuser.set_table(table);
+  stream.tracks = {person(3)};
+  const Decision& decision = stream.frame();
+  assert_says(decision, Action::track, 2, "follow");
+  ck_assert(!decision.immediate);
+  stream.tracks.clear();
+  stream.frame();
+  assert_says(decision, Action::hold, 2, "follow");  // it has no target
+  ck_assert(!decision.immediate);
+  stream.sensors = {1};
+  stream.frame();
+  assert_says(decision, Action::hold, 1, "stay");
+  ck_assert(decision.immediate && decision.changed);
+  stream.sensors = {0};
+  stream.frames(4s);
+  assert_says(decision, Action::hold, 0, "return");
+  ck_assert(!decision.immediate);
+  stream.frames(2s);
+  assert_says(decision, Action::zero, 3, "home");
+  ck_assert(decision.immediate);
+  stream.tracks = {person(3, TrackState::stopped)};
+  stream.frame();
+  stream.tracks.clear();
+  stream.frames(6s);
+  assert_says(decision, Action::hold, 0, "stopped");
+  ck_assert(!decision.immediate);
+
+  Stream computed;
+  computed.frames(6s);
+  ck_assert(computed.frame().action == Action::zero && !computed.frame().immediate);
+}
+END_TEST
+
 START_TEST(a_users_table_has_hysteresis_return_delay_and_searches) {
   RuleTable table{.name = "mine",
                   .sensors = 1,
@@ -384,15 +427,15 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "fuser",
-      {nothing_anywhere_means_zero, the_return_delay_counts_from_the_first_frame_and_from_a_reset,
-       the_head_returns_five_seconds_after_the_last_detection, limits_without_zero_are_reported,
-       invalid_readings_do_not_count_but_are_reported,
-       what_a_turning_base_trips_is_doubtful_and_does_not_count, a_straight_way_makes_doubt_sensor_by_sensor,
-       a_doubtful_sensor_that_rests_is_believed_again, sensors_and_base_have_a_time_of_their_own,
-       the_paper_holds_where_it_has_no_track, the_paper_ignores_a_fourth_sensor,
-       a_table_turns_no_further_than_the_stop, a_users_table_has_hysteresis_return_delay_and_searches,
-       an_unknown_pan_angle_commands_no_turn, time_that_goes_back_starts_anew,
-       a_long_gap_lets_every_timer_expire, options_that_make_no_sense_are_put_right,
-       whatever_comes_in_the_answer_is_sound_repeatable_and_free_of_allocations});
+      "fuser", {nothing_anywhere_means_zero, the_return_delay_counts_from_the_first_frame_and_from_a_reset,
+                the_head_returns_five_seconds_after_the_last_detection, limits_without_zero_are_reported,
+                invalid_readings_do_not_count_but_are_reported,
+                what_a_turning_base_trips_is_doubtful_and_does_not_count,
+                a_straight_way_makes_doubt_sensor_by_sensor, a_doubtful_sensor_that_rests_is_believed_again,
+                sensors_and_base_have_a_time_of_their_own, the_paper_holds_where_it_has_no_track,
+                the_paper_ignores_a_fourth_sensor, a_table_turns_no_further_than_the_stop,
+                a_tables_hold_and_zero_are_immediate, a_users_table_has_hysteresis_return_delay_and_searches,
+                an_unknown_pan_angle_commands_no_turn, time_that_goes_back_starts_anew,
+                a_long_gap_lets_every_timer_expire, options_that_make_no_sense_are_put_right,
+                whatever_comes_in_the_answer_is_sound_repeatable_and_free_of_allocations});
 }

@@ -99,8 +99,8 @@ struct Rig {
   void wait(Time length) {
     for (const Time end = now + length; now < end; now += 20ms) tick();
   }
-  // missing: what fusion decides while the person is out of the picture.
-  void run(double until, const Bearing& bearing, Action missing = Action::hold) {
+  // missing: what fusion decides while the person is out of the picture; immediate: by a table's rule.
+  void run(double until, const Bearing& bearing, Action missing = Action::hold, bool immediate = false) {
     for (; motion::seconds(now) < until; now += 20ms) {
       tick();
       if (now - asked_at < 500ms) yaw += asked * .02;
@@ -121,6 +121,7 @@ struct Rig {
       decision.made.rule_name = "test";
       decision.made.target = seen ? 4 : 0;
       decision.made.sector = {radians(120), radians(170)};
+      decision.made.immediate = immediate && !seen;
       decision.decided = now;
       HeadController::Frame frame;
       frame.seen = Observation{std::span(&track, seen ? 1 : 0), decision};
@@ -161,6 +162,32 @@ START_TEST(a_person_who_turns_back_behind_is_not_left) {
   Rig rig;
   rig.run(20, [](double t) { return 190 - std::abs(10 * (t - 9)); });
   ck_assert_double_eq(rig.lost, 0);
+}
+END_TEST
+
+START_TEST(a_rule_that_says_hold_or_zero_ends_the_way_round_at_once) {
+  for (const bool between : {false, true}) {
+    for (const Action action : {Action::hold, Action::zero}) {
+      Rig rig;
+      rig.run(6, crossing);
+      ck_assert_str_eq(rig.status.reason.c_str(), kRound);
+      if (between) {
+        FusionDecision decision;
+        decision.made.action = action;
+        decision.made.rule_name = "test";
+        decision.made.immediate = true;
+        decision.decided = rig.now;
+        rig.controller.on_decision(decision, rig.now, rig.out);
+        rig.tick();
+      } else {
+        rig.run(6.04, crossing, action, true);
+      }
+      const HeadState state = action == Action::hold ? HeadState::holding : HeadState::zeroing;
+      ck_assert(rig.status.state == state);
+      rig.run(7, [&](double) { return rig.head() + 180; }, action);  // for good
+      ck_assert(rig.status.state == state);
+    }
+  }
 }
 END_TEST
 
@@ -257,7 +284,8 @@ int main() {
   return cerberus::tests::run_suite(
       "head_round",
       {a_person_who_crosses_behind_is_met_on_the_other_side, a_person_who_turns_back_behind_is_not_left,
-       an_order_by_hand_ends_the_way_round_for_good, without_frames_the_watchdog_stops_the_way_round,
-       a_person_who_is_not_met_is_given_up, a_base_that_is_asked_to_turn_keeps_the_person_within_the_stops,
-       by_default_the_base_is_not_asked, whatever_stops_the_head_and_the_loss_of_the_target_end_the_request});
+       a_rule_that_says_hold_or_zero_ends_the_way_round_at_once, an_order_by_hand_ends_the_way_round_for_good,
+       without_frames_the_watchdog_stops_the_way_round, a_person_who_is_not_met_is_given_up,
+       a_base_that_is_asked_to_turn_keeps_the_person_within_the_stops, by_default_the_base_is_not_asked,
+       whatever_stops_the_head_and_the_loss_of_the_target_end_the_request});
 }

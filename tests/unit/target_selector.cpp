@@ -44,6 +44,10 @@ START_TEST(a_decision_on_the_frame_is_the_goal_and_its_target_the_middle_of_the_
   ck_assert_double_eq(track.goal.target->x, 110);
   ck_assert_double_eq(track.goal.target->y, 80);
   ck_assert_str_eq(track.reason.c_str(), "rule 3 (left): track 4");
+  ck_assert(!track.goal.immediate);
+  FusionDecision hold = decision(Action::hold, {});
+  hold.made.immediate = true;
+  ck_assert(selector.on_frame({kTracks, hold}, 80ms, 0).goal.immediate);
 }
 END_TEST
 
