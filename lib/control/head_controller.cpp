@@ -174,9 +174,21 @@ Pose HeadController::running(Pose pose) const {
   return pose;
 }
 
+// By how much the head is later there than the driver's pose of that time says. What it reports has a time of its own, of
+// the report, whatever it makes of commands.
+HeadController::Time HeadController::late_of(const Pose& pose) const {
+  return pose.measured ? Time::zero() : dead_time_.late();
+}
+
+// The driver's own pose when the head was there.
+Pose HeadController::driver_pose(Time taken) const {
+  return correction_.driver_pose(taken - late_of(correction_.driver_pose(taken)));
+}
+
 // Shifts the driver's poses by their correction and by what was learnt of the dead time.
 void HeadController::remember(std::vector<Pose>& poses) {
-  const Time late = dead_time_.late();
+  if (poses.empty()) return;
+  const Time late = late_of(poses.front());
   for (Pose& pose : poses) {
     correction_.add(pose);
     pose.from += late;
@@ -235,8 +247,8 @@ void HeadController::correct(const Frame& frame, Time now, DeferredNotifications
   if (turn && taken_ && correction_.position())
     dead_time_.add(*taken_, taken, turn->yaw, correction_.reckoned(), setup_.latency);
   const auto before = std::exchange(taken_, taken);
-  const Time late = dead_time_.late();
-  correction_.set_dead_time(setup_.latency + late);
+  correction_.set_dead_time(setup_.latency + dead_time_.late());
+  const Time late = late_of(correction_.driver_pose(taken));
   const bool base_known = frame.motion && base_is_known(*frame.motion);
   if (correction_.on_frame(taken - late, history_.at(effect_of(now)), turn, setup_.limits, base_known)) {
     confine_law();
@@ -374,7 +386,7 @@ Moment HeadController::moment_of(const Frame& frame, Time now) {
   if (estimate) capture.pan.position = estimate->pan;
   if (estimate) capture.tilt.position = estimate->tilt;
   const double reported = frame.motion ? frame.motion->base_yaw : 0;
-  const double reckoned = correction_.driver_pose(taken - dead_time_.late()).pan.position;
+  const double reckoned = driver_pose(taken).pan.position;
   base_yaw_.on_frame(taken, reported, picture_turn(frame),
                      {capture.pan.position, reckoned, motion::seconds(setup_.latency)});
   const Time effect = effect_of(now);

@@ -106,6 +106,8 @@ class HeadController {
   Time earliest(std::optional<Time> now);
   void confine_law();
   void remember(std::vector<motion::Pose>& poses);
+  Time late_of(const motion::Pose& pose) const;
+  motion::Pose driver_pose(Time taken) const;
   Time effect_of(Time now) const;
   // Of the picture since the frame before, less the reported turn of the base.
   std::optional<Turn> picture_turn(const Frame& frame) const;

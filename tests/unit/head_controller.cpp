@@ -35,6 +35,8 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const vision::Lens kLens(radians(90), {640, 480});
+// Radians by which the picture turns when it moves by one pixel.
+const double kPixel = base_turn(vision::Transform::translation(-1, 0), kLens, {640, 480}, {}, {}).yaw;
 
 struct Record {
   std::vector<HeadCommand> commands;
@@ -47,8 +49,8 @@ struct Record {
   std::function<void()> in_command, in_state;  // called by these, if set
   int homes = 0;
   bool simulated = true;
-  bool by_speeds = false;              // of its poses
-  std::vector<motion::SpeedMap> maps;  // of pan, as learnt
+  bool by_speeds = false, measured = false;  // of its poses
+  std::vector<motion::SpeedMap> maps;        // of pan, as learnt
 };
 
 class RecordedHead : public drivers::Head {
@@ -75,6 +77,7 @@ class RecordedHead : public drivers::Head {
     if (record_->in_state) record_->in_state();
     std::string wrong = head_->state(time, pose);
     pose.by_speeds = record_->by_speeds;
+    pose.measured = record_->measured;
     return wrong;
   }
   void learn(const motion::SpeedMap& pan, const motion::SpeedMap&) override { record_->maps.push_back(pan); }
@@ -1064,8 +1067,6 @@ END_TEST
 
 // A head that turns by three quarters of what it is commanded. Where its pose is of angles, its model is not of speeds.
 START_TEST(what_the_picture_shows_of_a_head_s_speeds_is_given_to_its_driver) {
-  const double pixel =
-      base_turn(vision::Transform::translation(-1, 0), kLens, {640, 480}, {}, {}).yaw;  // radians
   for (const bool by_speeds : {false, true}) {
     Options options;
     options.clock_driven = true;
@@ -1088,7 +1089,7 @@ START_TEST(what_the_picture_shows_of_a_head_s_speeds_is_given_to_its_driver) {
       const double turned = .75 * (pose.pan.position - before);
       before = pose.pan.position;
       frame.motion =
-          PictureMotion{vision::Transform::translation(-turned / pixel, 0), 1, {640, 480}, 0, true};
+          PictureMotion{vision::Transform::translation(-turned / kPixel, 0), 1, {640, 480}, 0, true};
       ck_assert(rig.controller.frame(frame, rig.out) == Answer::done);
       rig.collect();
     }
@@ -1098,6 +1099,43 @@ START_TEST(what_the_picture_shows_of_a_head_s_speeds_is_given_to_its_driver) {
     const double first = degrees(rig.record->maps.front().actual(radians(15)));
     ck_assert_msg(first > .7 * 15 && first < .95 * 15, "%g", first);
   }
+}
+END_TEST
+
+// A head that turns 200 ms later than it is reckoned, and reports its position at last.
+START_TEST(what_is_learnt_of_the_dead_time_shifts_no_reported_pose) {
+  Options options;
+  options.clock_driven = true;
+  options.simulated = false;
+  Rig rig(options);
+  const auto twin = drivers::make_head("simulated");
+  assert_text(twin->open(options.setup), "");
+  std::vector<double> positions(6, 0);
+  std::size_t given = 0;
+  Time now{};
+  const auto frame = [&] {
+    const double speed = (now / 1s % 2 == 0 ? 1 : -1) * (now / 2s % 2 == 0 ? 10 : 20);
+    rig.controller.turn(radians(speed), 0, now, rig.out);
+    rig.controller.tick(now, rig.out);
+    rig.collect();
+    for (; given < rig.record->commands.size(); ++given) twin->command(rig.record->commands[given]);
+    Pose pose;
+    assert_text(twin->state(now, pose), "");
+    positions.push_back(pose.pan.position);
+    auto frame = Rig::empty(now);
+    const double turned = positions.end()[-6] - positions.end()[-7];
+    frame.motion = PictureMotion{vision::Transform::translation(-turned / kPixel, 0), 1, {640, 480}, 0, true};
+    ck_assert(rig.controller.frame(frame, rig.out) == Answer::done);
+  };
+  for (; now < 20s; now += 40ms) frame();
+  const auto late = [&] { return rig.poses.back().from - (now - 40ms); };
+  ck_assert_msg(late() >= 140ms && late() <= 260ms, "%g s", motion::seconds(late()));
+  rig.record->measured = true;
+  for (int k = 0; k < 3; ++k, now += 40ms) frame();
+  assert_time(late(), 0ms);
+  rig.record->measured = false;  // its commands are as late as before
+  for (int k = 0; k < 3; ++k, now += 40ms) frame();
+  ck_assert(late() >= 140ms && late() <= 260ms);
 }
 END_TEST
 
@@ -1198,6 +1236,7 @@ int main() {
                            an_order_that_ends_the_fault_is_obeyed,
                            a_reference_is_lost_only_where_the_picture_is_measured,
                            what_the_picture_shows_of_a_head_s_speeds_is_given_to_its_driver,
+                           what_is_learnt_of_the_dead_time_shifts_no_reported_pose,
                            a_head_that_cannot_be_opened_is_an_error_and_reported_once,
                            an_interrupted_frame_is_passed_again});
 }
