@@ -7,20 +7,13 @@
 
 namespace cerberus::control {
 
-namespace {
-
-constexpr double kPause =
-    .5;  // seconds between frames, after which nothing is known of the turn between them
-
-}  // namespace
-
 void BaseYaw::on_frame(motion::Time taken, double reported, const std::optional<Turn>& turn,
                        const Head& head) {
   const double dt = taken_ ? motion::seconds(taken - *taken_) : 0;
   if (taken_ && dt <= 0) return;
   taken_ = taken;
   const Head before = std::exchange(head_, head);
-  if (dt <= 0 || dt > kPause) {
+  if (dt <= 0 || dt > TargetFilter::kPause) {  // nothing is known of the turn meanwhile
     reported_rate_ = other_rate_ = 0;
     return;
   }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/following/target_filter.h"
+
 namespace cerberus::control {
 
 namespace {
@@ -14,8 +16,7 @@ struct Parameters {
   double explained = .5;  // r^2; derived: more of the picture's turn is the head's than is not
   // (radians a second)^2 seconds of reckoned turn. derived: changes of 5 degrees a second over two seconds
   double least = 2 * sensing::radians(5) * sensing::radians(5);
-  double pace = .3;   // seconds a second; derived: slower than poses would jump by
-  double pause = .5;  // seconds between frames, after which their turns are not compared
+  double pace = .3;  // seconds a second; derived: slower than poses would jump by
 };
 constexpr Parameters kParameters;
 
@@ -35,7 +36,7 @@ double DeadTime::Sums::explained() const {
 void DeadTime::add(motion::Time before, motion::Time taken, double turn, const motion::PoseHistory& reckoned,
                    motion::Time told) {
   const double dt = motion::seconds(taken - before);
-  if (!(dt > 0) || dt > kParameters.pause || !std::isfinite(turn)) return;
+  if (!(dt > 0) || dt > TargetFilter::kPause || !std::isfinite(turn)) return;
   const double keep = std::exp(-dt / kParameters.kept);
   double most = kParameters.explained;
   const Sums* best = nullptr;

@@ -16,7 +16,9 @@ class TargetFilter {
     double acceleration = 0;  // q, radians^2 / s^3
     double rate = 0;          // radians a second, standard deviation of a new target's rate
   };
-  static constexpr double kPause = .5;  // seconds. derived: a camera-found track is given up after as much
+  // Seconds between frames, after which nothing is known of the time between them. derived: a camera-found track is given up
+  // after as much
+  static constexpr double kPause = .5;
 
   void reset() { known_ = false; }
   bool known() const { return known_; }
