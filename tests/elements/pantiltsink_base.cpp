@@ -15,6 +15,20 @@ using namespace head_rig;
 // A lens of 60 degrees: F = 160 / tan 30. A shift of s pixels is a mean angle of .9069 s / F over the picture.
 constexpr double kPixels = 160 / .57735 / .9069 * std::numbers::pi / 180;  // a degree
 
+// The picture has turned by `turn` degrees since the frame at `from`, and by `pan` since the first one.
+void set_motion(GstBuffer* buffer, GstClockTime from, guint age, double turn, double pan) {
+  CerberusCameraMotion motion;
+  cerberus_camera_motion_init(&motion);
+  motion.confidence = 1;
+  motion.from = from;
+  motion.scene_age = age;
+  motion.path_id = 1;
+  for (const int i : {0, 4, 8}) motion.matrix[i] = motion.path[i] = 1;
+  motion.matrix[2] = -turn * kPixels;
+  motion.path[2] = -pan * kPixels;
+  cerberus_buffer_set_camera_motion(buffer, &motion);
+}
+
 // A base that turns at 45 degrees a second, and the camera on it.
 struct Base {
   Rig& rig;
@@ -27,16 +41,7 @@ struct Base {
     const double turn = 45 * static_cast<double>(now - last) / GST_SECOND;
     pan += turn;
     GstBuffer* buffer = frame_with(CERBERUS_FUSION_HOLD, now);
-    CerberusCameraMotion motion;
-    cerberus_camera_motion_init(&motion);
-    motion.confidence = 1;
-    motion.from = std::exchange(last, now);
-    motion.scene_age = ++frames;
-    motion.path_id = 1;
-    for (const int i : {0, 4, 8}) motion.matrix[i] = motion.path[i] = 1;
-    motion.matrix[2] = -turn * kPixels;
-    motion.path[2] = -pan * kPixels;
-    cerberus_buffer_set_camera_motion(buffer, &motion);
+    set_motion(buffer, std::exchange(last, now), ++frames, turn, pan);
     return buffer;
   }
   // Turns on by so many degrees, with a frame each time when the head is to be looked after, and 40 ms later at the
@@ -88,6 +93,28 @@ GST_START_TEST(a_gyro_that_is_missing_is_said_once) {
 }
 GST_END_TEST
 
+// It says no number, as it may of a robot whose turn is not known.
+GST_START_TEST(a_base_whose_rate_is_no_number_leaves_the_head_its_target) {
+  Rig rig("horizontal-fov=60");
+  double pan = 0;
+  for (guint k = 0; k < 75; ++k) {
+    GstBuffer* buffer = frame_at(k * kFrame);
+    set_motion(buffer, k > 0 ? (k - 1) * kFrame : 0, k + 1, 0, 0);
+    CerberusBase rate;
+    cerberus_base_init(&rate);
+    rate.source = CERBERUS_BASE_REPORTED;
+    rate.yaw_rate = NAN;
+    cerberus_buffer_set_base(buffer, &rate);
+    add(buffer, CERBERUS_FUSION_TRACK, 7);
+    add(buffer, person(7, 25 - pan));
+    rig.push(buffer);
+    for (const CerberusPose& pose : rig.poses())
+      cerberus_pose_evaluate(&pose, (k + 1) * kFrame, &pan, nullptr);
+  }
+  fail_unless(std::fabs(pan - 25) < 1, "%g", pan);
+}
+GST_END_TEST
+
 static Suite* pantiltsink_base_suite() {
   Suite* suite = suite_create("pantiltsink on a base that turns");
   TCase* tests = tcase_create("all");
@@ -95,6 +122,7 @@ static Suite* pantiltsink_base_suite() {
   tcase_set_timeout(tests, 60);
   tcase_add_test(tests, the_turn_of_the_base_is_not_the_heads);
   tcase_add_test(tests, a_gyro_that_is_missing_is_said_once);
+  tcase_add_test(tests, a_base_whose_rate_is_no_number_leaves_the_head_its_target);
   return suite;
 }
 

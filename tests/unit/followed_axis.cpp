@@ -324,6 +324,24 @@ START_TEST(a_long_lens_limits_the_speed_by_what_the_picture_turns) {
 }
 END_TEST
 
+// The same where each picture comes twice.
+START_TEST(a_repeated_picture_of_a_long_lens_does_not_lift_the_limit) {
+  FollowedAxis axis;
+  axis.begin();
+  const FollowedAxis::Parameters parameters{.field_of_view = radians(5)};
+  const AxisLimits limits{-3, 3, radians(90), radians(300)};
+  double fastest = 0;
+  for (int k = 0; k < 50; ++k) {
+    const FollowedAxis::Times times{k / 2 * .04, k * .02 + .1};
+    const auto aim = axis.observe(radians(60), {}, times, parameters);
+    const AxisCommand command = axis.command(aim, {}, limits, times, parameters);
+    if (k >= 2) fastest = std::max(fastest, degrees(command.speed));  // one picture has no interval
+  }
+  ck_assert_double_le(fastest, 25.01);
+  ck_assert_double_ge(fastest, 24);
+}
+END_TEST
+
 // The dead time that is learnt becomes shorter, and two frames come at once.
 START_TEST(an_effect_that_comes_before_the_last_one_changes_no_speed) {
   FollowedAxis axis;
@@ -371,6 +389,7 @@ int main() {
        calm_lags_most_and_fast_trembles_most, a_long_way_from_picture_to_effect_makes_it_slow_and_not_swing,
        a_new_target_is_centred_and_an_old_one_within_the_band_rests, the_first_command_is_not_slowed,
        dead_bands_and_rest_follow_the_zoom, a_long_lens_limits_the_speed_by_what_the_picture_turns,
+       a_repeated_picture_of_a_long_lens_does_not_lift_the_limit,
        an_effect_that_comes_before_the_last_one_changes_no_speed,
        nothing_is_predicted_where_the_axis_is_blind, nothing_is_allocated});
 }

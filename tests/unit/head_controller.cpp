@@ -1139,6 +1139,26 @@ START_TEST(what_is_learnt_of_the_dead_time_shifts_no_reported_pose) {
 }
 END_TEST
 
+// 45 degrees a second, by the picture. Then the stream begins anew, and a person stands 20 degrees to the right.
+START_TEST(a_new_stream_knows_nothing_of_the_base) {
+  Options options;
+  options.clock_driven = true;
+  options.simulated = false;
+  Rig rig(options);
+  Time now{};
+  for (; now < 2s; now += 40ms) {
+    rig.controller.tick(now, rig.out);
+    auto frame = Rig::empty(now);
+    frame.motion = PictureMotion{
+        vision::Transform::translation(-radians(45) * .04 / kPixel, 0), 1, {640, 480}, 0, false};
+    ck_assert(rig.controller.frame(frame, rig.out) == Answer::done);
+  }
+  rig.controller.forget();
+  ck_assert(rig.controller.frame(Rig::with(now, Action::track, 20), rig.out) == Answer::done);
+  ck_assert_double_eq_tol(degrees(rig.command().pan.value), 20, .5);
+}
+END_TEST
+
 START_TEST(a_head_that_cannot_be_opened_is_an_error_and_reported_once) {
   Options options;
   options.refusal = "no such port";
@@ -1237,6 +1257,7 @@ int main() {
                            a_reference_is_lost_only_where_the_picture_is_measured,
                            what_the_picture_shows_of_a_head_s_speeds_is_given_to_its_driver,
                            what_is_learnt_of_the_dead_time_shifts_no_reported_pose,
+                           a_new_stream_knows_nothing_of_the_base,
                            a_head_that_cannot_be_opened_is_an_error_and_reported_once,
                            an_interrupted_frame_is_passed_again});
 }

@@ -30,12 +30,15 @@ class StoppableHead : public drivers::Head {
  public:
   struct State {
     bool pressed = false, parted = false;
+    std::string failure;  // of every command
   };
   explicit StoppableHead(std::shared_ptr<State> state) : state_(std::move(state)) {}
   std::string open(const drivers::HeadSetup& setup) override { return head_->open(setup); }
   void close() noexcept override { head_->close(); }
   void stop(Time now) noexcept override { head_->stop(now); }
-  std::string command(const drivers::HeadCommand& command) override { return head_->command(command); }
+  std::string command(const drivers::HeadCommand& command) override {
+    return state_->failure.empty() ? head_->command(command) : state_->failure;
+  }
   std::string limit(Time now, const motion::Limits& limits) override { return head_->limit(now, limits); }
   std::string state(Time time, Pose& pose) override { return head_->state(time, pose); }
   bool emergency() override { return state_->pressed; }
@@ -215,6 +218,25 @@ START_TEST(without_frames_the_watchdog_stops_the_way_round) {
   for (const Time end = rig.now + 1s; rig.now < end; rig.now += 20ms) rig.tick();
   ck_assert_double_eq_tol(rig.head(), there, 1e-6);
   ck_assert(rig.status.state == HeadState::stopped);
+  rig.run(8.2, crossing);  // the turn would not be over
+  ck_assert_double_eq_tol(rig.head(), there, 1e-6);
+  ck_assert(rig.status.state == HeadState::holding);
+}
+END_TEST
+
+START_TEST(a_fault_ends_the_way_round_for_good) {
+  Rig rig;
+  rig.run(5.6, crossing);
+  ck_assert_str_eq(rig.status.reason.c_str(), kRound);
+  rig.state->failure = "no power";
+  rig.run(5.8, crossing);
+  ck_assert(rig.status.state == HeadState::fault);
+  rig.state->failure.clear();
+  rig.run(6.4, crossing);
+  const double there = rig.head();
+  rig.run(8, crossing);
+  ck_assert_double_eq_tol(rig.head(), there, 1e-6);
+  ck_assert(rig.status.state == HeadState::holding);
 }
 END_TEST
 
@@ -285,7 +307,7 @@ int main() {
       "head_round",
       {a_person_who_crosses_behind_is_met_on_the_other_side, a_person_who_turns_back_behind_is_not_left,
        a_rule_that_says_hold_or_zero_ends_the_way_round_at_once, an_order_by_hand_ends_the_way_round_for_good,
-       without_frames_the_watchdog_stops_the_way_round, a_person_who_is_not_met_is_given_up,
-       a_base_that_is_asked_to_turn_keeps_the_person_within_the_stops, by_default_the_base_is_not_asked,
-       whatever_stops_the_head_and_the_loss_of_the_target_end_the_request});
+       without_frames_the_watchdog_stops_the_way_round, a_fault_ends_the_way_round_for_good,
+       a_person_who_is_not_met_is_given_up, a_base_that_is_asked_to_turn_keeps_the_person_within_the_stops,
+       by_default_the_base_is_not_asked, whatever_stops_the_head_and_the_loss_of_the_target_end_the_request});
 }

@@ -99,6 +99,9 @@ START_TEST(a_zoom_is_sent_once_to_a_head_that_takes_it_and_has_said_where_it_is)
   pipeline.client.handle("fault no lens", 6s);
   ck_assert(pipeline.order(.75, 7s).find("zoom") == std::string::npos);
   pipeline.client.handle("recovered", 8s);
+  pipeline.sent.clear();
+  pipeline.client.execute(8s);  // what was commanded before, once more
+  ck_assert(pipeline.sent.find("zoom") == std::string::npos);
   ck_assert(pipeline.order({}, 8s).find("zoom") == std::string::npos);  // what was ordered before is over
 }
 END_TEST
