@@ -300,11 +300,11 @@ def check_json(path):
 
 
 def check_changelog():
-    """The newest version of the changelog is meson's, with a date, and a user reads it to its end."""
+    """The newest version of the changelog, below what is not released yet, is meson's, with a date; a user reads it to its end."""
     path = TOP / 'CHANGELOG.md'
     text = path.read_text('utf-8')
     built = re.search(r"^  version: '([^']+)'", (TOP / 'meson.build').read_text('utf-8'), re.MULTILINE).group(1)
-    newest = re.search(r'^## (.*)$', text, re.MULTILINE).group(1)
+    newest = next(heading for heading in re.findall(r'^## (.*)$', text, re.MULTILINE) if heading != '[Unreleased]')
     if not re.fullmatch(re.escape(f'[{built}]') + r' - \d{4}-\d\d-\d\d', newest):
         complain(path, f'begins with "{newest}" and not with "[{built}] - YYYY-MM-DD", the version of meson.build')
     for release in re.split(r'^## ', text, flags=re.MULTILINE)[1:]:
