@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/objdetect.hpp>
 
+#include <cmath>
 #include <vector>
 
 namespace cerberus::plugin {
@@ -32,11 +33,13 @@ class HogDetector : public vision::PersonDetector {
     // OpenCV's Mat takes no constant data; nothing writes through this one.
     const cv::Mat given(picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.data),
                         static_cast<std::size_t>(picture.stride));
-    cv::resize(given, enlarged_, {}, scale, scale, scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+    const cv::Size size(static_cast<int>(std::lround(scale * picture.width)),
+                        static_cast<int>(std::lround(scale * picture.height)));
     const cv::Size padding(scan_.padding, scan_.padding);
-    if (enlarged_.cols + 2 * padding.width < hog_.winSize.width ||
-        enlarged_.rows + 2 * padding.height < hog_.winSize.height)
+    if (size.empty() || size.width + 2 * padding.width < hog_.winSize.width ||
+        size.height + 2 * padding.height < hog_.winSize.height)
       return std::nullopt;
+    cv::resize(given, enlarged_, size, 0, 0, scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
     windows_.clear(), scores_.clear();
     hog_.detectMultiScale(enlarged_, windows_, scores_, scan_.threshold, kWindowStride, padding,
                           scan_.scale_step, 0);

@@ -6,14 +6,17 @@
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <exception>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "text/file.h"
+#include "vision/persons/darknet_file.h"
 #include "vision/persons/network_output.h"
 #include "vision/persons/onnx_file.h"
 
@@ -22,21 +25,34 @@ namespace cerberus::plugin {
 namespace {
 
 constexpr double kBorder = 114;  // grey level around a picture of another aspect, as YOLO models are trained
-constexpr double kWhite = 255;   // becomes 1
+constexpr std::size_t kLargestModel = std::size_t{1} << 30, kLargestText = 1 << 20;  // bytes of files
+constexpr std::string_view kWeights = ".weights", kConfig = ".cfg";
 
 std::string not_run(const std::string& name, const std::exception& why) {
   return "The model " + name + " cannot be run by OpenCV " + CV_VERSION + ": " + why.what();
 }
 
+// What the settings say of the input; nullopt: the layout decides.
+struct InputSettings {
+  std::optional<std::array<double, 3>> mean, scale;
+};
+
+struct Network {
+  cv::dnn::Net net;
+  vision::Size input;
+  int darknet_classes = 0;
+};
+
 class ModelDetector : public vision::PersonDetector {
  public:
-  ModelDetector(const std::string& name, std::span<const std::uint8_t> model, vision::Size input,
-                vision::PersonClass person, double threshold)
+  ModelDetector(const std::string& name, const Network& network, vision::PersonClass person,
+                const InputSettings& settings, double threshold)
       : name_(name),
-        net_(cv::dnn::readNetFromONNX(reinterpret_cast<const char*>(model.data()), model.size())),
+        net_(network.net),
         outputs_of_net_(net_.getUnconnectedOutLayersNames()),
-        reader_(input, person),
-        input_(input),
+        reader_(network.input, person, network.darknet_classes),
+        input_(network.input),
+        settings_(settings),
         threshold_(threshold) {}
 
   // Once on an empty picture, before the first frame: layers that OpenCV cannot run are thrown as cv::Exception, outputs
@@ -58,6 +74,20 @@ class ModelDetector : public vision::PersonDetector {
   }
 
  private:
+  // framed_ as the network takes it.
+  void fill_blob() {
+    const vision::NetworkInput usual = reader_.usual_input();
+    const std::array<double, 3> mean = settings_.mean.value_or(usual.mean),
+                                scale = settings_.scale.value_or(usual.scale);
+    const int sizes[] = {1, static_cast<int>(mean.size()), input_.height, input_.width};
+    blob_.create(4, sizes, CV_32F);
+    for (int plane = 0; plane < sizes[1]; ++plane) {
+      const auto n = static_cast<std::size_t>(plane);
+      cv::Mat levels(input_.height, input_.width, CV_32F, blob_.ptr<float>(0, plane));
+      framed_.convertTo(levels, CV_32F, scale[n], -mean[n] * scale[n]);
+    }
+  }
+
   std::optional<std::string> look(vision::GrayView picture, std::vector<vision::PersonDetection>& hits) {
     // OpenCV's Mat takes no constant data; nothing writes through this one.
     const cv::Mat given(picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.data),
@@ -70,8 +100,7 @@ class ModelDetector : public vision::PersonDetector {
     framed_.create(input_.height, input_.width, CV_8UC1);
     framed_.setTo(cv::Scalar(kBorder));
     scaled_.copyTo(framed_(cv::Rect({0, 0}, inner)));
-    cv::cvtColor(framed_, colours_, cv::COLOR_GRAY2BGR);
-    cv::dnn::blobFromImage(colours_, blob_, reader_.takes_bytes() ? 1 : 1 / kWhite);
+    fill_blob();
     net_.setInput(blob_);
     net_.forward(results_, outputs_of_net_);
     outputs_.clear();
@@ -94,61 +123,137 @@ class ModelDetector : public vision::PersonDetector {
   const std::vector<cv::String> outputs_of_net_;
   vision::NetworkReader reader_;
   const vision::Size input_;
+  const InputSettings settings_;
   const double threshold_;
-  cv::Mat scaled_, framed_, colours_, blob_;
+  cv::Mat scaled_, framed_, blob_;
   std::vector<cv::Mat> results_;
   std::vector<vision::NetworkOutput> outputs_;
 };
 
+// what: "model", "labels", ...; nullopt: it cannot be read, and `wrong` says so.
+std::optional<std::string> contents(const char* what, const std::string& path, std::size_t most,
+                                    std::string& wrong) {
+  text::File file = text::read_file(path, most);
+  switch (file.fault) {
+    case text::File::Fault::none:
+      return std::move(file.text);
+    case text::File::Fault::failed:
+      wrong = std::string("The ") + what + " " + path + " cannot be read: " + std::strerror(file.error) + ".";
+      break;
+    case text::File::Fault::irregular:
+      wrong = std::string("The ") + what + " " + path + " cannot be read: it is no file.";
+      break;
+    case text::File::Fault::too_large:
+      wrong = std::string("The ") + what + " " + path + " is too large.";
+      break;
+  }
+  return std::nullopt;
+}
+
 // The number of the line `person`; empty lines at the end are no class.
-std::optional<vision::PersonClass> person_in(std::istream& labels) {
+std::optional<vision::PersonClass> person_in(std::string_view labels) {
   vision::PersonClass person;
-  std::string line;
-  for (int n = 1; std::getline(labels, line); ++n) {
-    if (line.ends_with('\r')) line.pop_back();
+  for (int n = 1; !labels.empty(); ++n) {
+    const std::size_t end = std::min(labels.find('\n'), labels.size());
+    std::string_view line = labels.substr(0, end);
+    labels.remove_prefix(std::min(end + 1, labels.size()));
+    if (line.ends_with('\r')) line.remove_suffix(1);
     if (!line.empty()) person.classes = n;
     if (line == "person" && person.number < 0) person.number = n - 1;
   }
   return person.number < 0 ? std::nullopt : std::optional(person);
 }
 
-}  // namespace
+std::optional<InputSettings> input_in(const ModelSettings& settings, std::string& wrong) {
+  InputSettings input;
+  const auto read = [&](const char* name, const std::string& text, std::optional<std::array<double, 3>>& to) {
+    if (text.empty() || (to = vision::plane_numbers(text))) return true;
+    wrong = std::string("The property ") + name + " takes one number or three, not \"" + text + "\".";
+    return false;
+  };
+  if (!read("mean", settings.mean, input.mean) || !read("scale", settings.scale, input.scale))
+    return std::nullopt;
+  return input;
+}
 
-std::unique_ptr<vision::PersonDetector> make_model_detector(const std::string& model,
-                                                            const std::string& labels, double threshold,
-                                                            std::string& wrong) {
-  std::ifstream file(model, std::ios::binary);
-  if (!file) return wrong = "The model " + model + " cannot be read.", nullptr;
-  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
-  const auto input = vision::onnx_input_size(bytes);
-  if (!input)
-    return wrong = "The model " + model +
-                   " is no ONNX file with an input of 1 x 3 x height x width numbers: export it with a fixed "
-                   "size.",
+std::unique_ptr<ModelDetector> onnx_detector(const ModelSettings& settings, const std::string& model,
+                                             const vision::PersonClass& person, const InputSettings& input,
+                                             std::string& wrong) {
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(model.data()), model.size());
+  const auto size = vision::onnx_input_size(bytes);
+  if (!size)
+    return wrong = "The model " + settings.model +
+                   " is no ONNX file with an input of 1 x 3 x height x width numbers (export it with a fixed "
+                   "size), and no darknet weights, whose name ends in .weights.",
            nullptr;
-  vision::PersonClass person;
-  if (!labels.empty()) {
-    std::ifstream lines(labels);
-    if (!lines) return wrong = "The labels " + labels + " cannot be read.", nullptr;
-    const auto line = person_in(lines);
-    if (!line) return wrong = "The labels " + labels + " have no line that says person.", nullptr;
-    person = *line;
-  }
-  const auto detector = [&](std::span<const std::uint8_t> file_bytes) {
-    auto made = std::make_unique<ModelDetector>(model, file_bytes, *input, person, threshold);
+  const auto detector = [&](std::span<const std::uint8_t> file) {
+    const Network network{cv::dnn::readNetFromONNX(reinterpret_cast<const char*>(file.data()), file.size()),
+                          *size};
+    auto made = std::make_unique<ModelDetector>(settings.model, network, person, input, settings.threshold);
     if (const auto refusal = made->try_out()) wrong = *refusal, made.reset();
     return made;
   };
   try {
-    try {
-      return detector(bytes);
-    } catch (const cv::Exception&) {
-      const auto other = vision::onnx_with_full_factors(bytes);
-      if (!other) throw;
-      return detector(*other);
-    }
+    return detector(bytes);
+  } catch (const cv::Exception&) {
+    const auto other = vision::onnx_with_full_factors(bytes);
+    if (!other) throw;
+    return detector(*other);
+  }
+}
+
+std::unique_ptr<ModelDetector> darknet_detector(const ModelSettings& settings, const std::string& weights,
+                                                const vision::PersonClass& person, const InputSettings& input,
+                                                std::string& wrong) {
+  const std::string path =
+      !settings.config.empty()
+          ? settings.config
+          : settings.model.substr(0, settings.model.size() - kWeights.size()).append(kConfig);
+  const auto cfg = contents("configuration", path, kLargestText, wrong);
+  if (!cfg) {
+    wrong += " The weights " + settings.model + " need it: beside them, or named by config=.";
+    return nullptr;
+  }
+  std::string fault;
+  const auto network = vision::read_darknet_cfg(*cfg, fault);
+  if (!network) return wrong = "The configuration " + path + " cannot be used: " + fault + ".", nullptr;
+  const auto count = vision::count_darknet_weights(weights);
+  if (!count) return wrong = "The model " + settings.model + " holds no darknet weights.", nullptr;
+  if (network->weights && *network->weights != *count)
+    return wrong = "The model " + settings.model + " has " + std::to_string(*count) +
+                   " weights, and its configuration " + path + " needs " + std::to_string(*network->weights) +
+                   ": it is another network's, or incomplete.",
+           nullptr;
+  const std::string lowered = vision::darknet_cfg_with_threshold(*cfg, settings.threshold);
+  const Network loaded{
+      cv::dnn::readNetFromDarknet(lowered.data(), lowered.size(), weights.data(), weights.size()),
+      network->input, network->classes};
+  auto made = std::make_unique<ModelDetector>(settings.model, loaded, person, input, settings.threshold);
+  if (const auto refusal = made->try_out()) wrong = *refusal, made.reset();
+  return made;
+}
+
+}  // namespace
+
+std::unique_ptr<vision::PersonDetector> make_model_detector(const ModelSettings& settings,
+                                                            std::string& wrong) {
+  const auto model = contents("model", settings.model, kLargestModel, wrong);
+  if (!model) return nullptr;
+  vision::PersonClass person;
+  if (!settings.labels.empty()) {
+    const auto labels = contents("labels", settings.labels, kLargestText, wrong);
+    if (!labels) return nullptr;
+    const auto line = person_in(*labels);
+    if (!line) return wrong = "The labels " + settings.labels + " have no line that says person.", nullptr;
+    person = *line;
+  }
+  const auto input = input_in(settings, wrong);
+  if (!input) return nullptr;
+  try {
+    return settings.model.ends_with(kWeights) ? darknet_detector(settings, *model, person, *input, wrong)
+                                              : onnx_detector(settings, *model, person, *input, wrong);
   } catch (const std::exception& e) {
-    return wrong = not_run(model, e), nullptr;
+    return wrong = not_run(settings.model, e), nullptr;
   }
 }
 

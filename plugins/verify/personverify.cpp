@@ -29,21 +29,32 @@
  * away need different scales; a network sees one. It costs up to 60 ms a look on one core. It does not see people who
  * sit or lie, or only their upper half.
  *
- * `model` names a network instead: an ONNX file whose input has a fixed size (1 x 3 x height x width, values 0 to 1;
- * YOLOX 0 to 255). It sees the brightness only, as grey. Outputs of YOLO 5 to 8, 10 and 11, YOLOX and SSD are read,
- * of N boxes and C classes (also transposed, and without the batch):
+ * `model` names a network instead: an ONNX file whose input has a fixed size (1 x 3 x height x width), or the weights of a
+ * darknet model (`.weights`) with its configuration (`.cfg`) beside it or named by `config`. It sees the brightness only,
+ * as grey. Outputs of YOLO 5 to 8, 10 and 11, YOLOX, SSD and NanoDet are read, of N boxes and C classes (also
+ * transposed, and without the batch):
  *
  * - YOLO 5, 6 and 7: 1 x N x (5 + C), YOLO 8 and 11: 1 x (4 + C) x N, YOLOX with or without `--decode_in_inference`;
  * - end to end (YOLO 10): 1 x N x 6, corners, score and class;
- * - SSD: 1 x 1 x N x 7, or 1 x N x 4 (corners) and 1 x N x C.
+ * - SSD: 1 x 1 x N x 7, or 1 x N x 4 (corners) and 1 x N x C;
+ * - NanoDet: scores (N x C) and distances (N x 32) for cells of 8, 16 and 32 pixels, or of 8 to 64; NanoDet-Plus:
+ *   1 x N x (C + 32);
+ * - darknet: every `[yolo]` layer (YOLO 3 and 4, Yolo-Fastest).
  *
  * The shape, the number of boxes for that input and the numbers themselves tell them apart; where they do not, the
  * number of classes does, which `labels` names. Outputs that are none of these, mostly boxes without a size, and scores beyond
  * 0 to 1 are an error that says so, at the start, or where the network first finds something. Which layers can be run
  * depends on OpenCV: that of Debian 12 (4.6) is older than YOLO 8, whose one step that it cannot do is rewritten while the
- * file is read; a model that cannot be run is an error at the start. No model comes with Cerberus, and each has its
- * licence: YOLO 5, 8, 10 and 11 are AGPL-3.0 (Ultralytics also sells others), YOLO 7 is GPL-3.0, YOLOX Apache-2.0, SSD of
- * torchvision BSD-3-Clause; the data that they were trained with has terms of its own.
+ * file is read; a model that cannot be run is an error at the start.
+ *
+ * A network gets (level - mean) * scale of grey levels from 0 to 255. By default these are numbers from 0 to 1, YOLOX gets
+ * 0 to 255, and NanoDet levels about the mean of the pictures that it is trained with (103.53,116.28,123.675, times
+ * 0.017429,0.017507,0.017125). A network that was trained otherwise needs the properties `mean` and `scale`: one number, or
+ * three for its planes in their order.
+ *
+ * No model comes with Cerberus; `pipelines/setup person` fetches a small one on request. Each has its licence: YOLO 5, 8,
+ * 10 and 11 are AGPL-3.0 (Ultralytics also sells others), YOLO 7 is GPL-3.0, YOLOX and NanoDet are Apache-2.0, darknet's own
+ * are free for any use, SSD of torchvision is BSD-3-Clause; the data that they were trained with has terms of its own.
  *
  * Live, a result counts from the first frame after it is there, and no frame waits. In a pipeline that is not live it
  * counts from the first frame that is at least 40 ms of running time later than the frame that was looked at, and that
@@ -137,7 +148,7 @@ GType require_type() {
 
 struct Settings {
   double rate = 4, threshold = 0, phase = 0;
-  std::string model, labels;
+  std::string model, config, labels, mean, scale;
   int require = REQUIRE_NONE;
 };
 
@@ -151,13 +162,26 @@ const cerberus::plugin::Property<Settings> kProperties[] = {
              "the Daimler "
              "detector, 0.4 of a model")
         .read_at_start(),
-    property("model", &Settings::model,
-             "ONNX file of a network that detects objects (YOLO or SSD), run by OpenCV; empty: the Daimler "
-             "detector")
+    property(
+        "model", &Settings::model,
+        "File of a network that detects objects, run by OpenCV: ONNX (YOLO, SSD or NanoDet) or darknet's "
+        ".weights; empty: the Daimler detector")
+        .read_at_start(),
+    property("config", &Settings::config,
+             "Darknet's .cfg of a model that is .weights; empty: the one beside it, of the same name")
         .read_at_start(),
     property("labels", &Settings::labels,
              "File with the names of the model's classes, one a line, of which one is person; empty: person "
              "is the first class")
+        .read_at_start(),
+    property(
+        "mean", &Settings::mean,
+        "Grey level (0 to 255) that is subtracted before the model sees it: one number, or three for its "
+        "planes in their order (103.53,116.28,123.675); empty: 0, or what NanoDet takes")
+        .read_at_start(),
+    property("scale", &Settings::scale,
+             "By which the difference is then multiplied, likewise: empty: 1/255 (0.00392), 1 of YOLOX, or "
+             "what NanoDet takes")
         .read_at_start(),
     property("phase", &Settings::phase, 0, 1,
              "Share of the time between two looks by which the first one is put off: several cameras on one "
@@ -236,7 +260,13 @@ gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
     std::string wrong;
     auto detector =
         model
-            ? cerberus::plugin::make_model_detector(settings.model, settings.labels, least, wrong)
+            ? cerberus::plugin::make_model_detector({.model = settings.model,
+                                                     .config = settings.config,
+                                                     .labels = settings.labels,
+                                                     .mean = settings.mean,
+                                                     .scale = settings.scale,
+                                                     .threshold = least},
+                                                    wrong)
             : cerberus::plugin::make_hog_detector(
                   cerberus::plugin::HogWeights::daimler,
                   {.threshold = least, .scale_step = kLookScaleStep, .padding = 0, .share = kFollowedShare});

@@ -46,7 +46,9 @@ std::unique_ptr<vision::WholeFrameDetector> detector_of(const std::string& name)
         plugin::kWholeFrameLines, plugin::body_share(weights));
   }
   std::string wrong;
-  detector = plugin::make_model_detector(name, "", kLeastProbability, wrong);
+  detector = plugin::make_model_detector(
+      {.model = name, .config = {}, .labels = {}, .mean = {}, .scale = {}, .threshold = kLeastProbability},
+      wrong);
   if (!detector) {
     std::fprintf(stderr, "bench-persons: %s\n", wrong.c_str());
     return nullptr;

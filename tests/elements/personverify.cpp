@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "outputs.h"
+#include "support/bodies.h"
 #include "support/onnx.h"
 #include "support/temporary_file.h"
 
@@ -33,29 +34,6 @@ constexpr int kWide = 320, kHigh = 240;
 constexpr guint8 kWall = 170, kDark = 60;
 constexpr int kPersonHeight = 100, kPersonWidth = 40;
 
-// A part of a body: an ellipse, or a bar that leans.
-void ellipse(std::vector<guint8>& picture, double cx, double cy, double rx, double ry) {
-  for (int y = static_cast<int>(cy - ry); y <= cy + ry; ++y)
-    for (int x = std::max(0, static_cast<int>(cx - rx)); x <= std::min(kWide - 1.0, cx + rx); ++x)
-      if (std::hypot((x - cx) / rx, (y - cy) / ry) < 1)
-        picture[static_cast<std::size_t>(y) * kWide + x] = kDark;
-}
-void bar(std::vector<guint8>& picture, double x0, double y0, double x1, double y1, double half) {
-  for (int y = static_cast<int>(y0); y < y1; ++y) {
-    const double cx = x0 + (x1 - x0) * (y - y0) / (y1 - y0);
-    for (int x = std::max(0, static_cast<int>(cx - half)); x <= std::min(kWide - 1.0, cx + half); ++x)
-      if (std::abs(x - cx) < half) picture[static_cast<std::size_t>(y) * kWide + x] = kDark;
-  }
-}
-
-// A person who stands, 100 pixels from head to foot; x, y: top left corner of a box of 40 x 100.
-void draw_person(std::vector<guint8>& picture, double x, double y) {
-  const double middle = x + kPersonWidth / 2;
-  ellipse(picture, middle, y + 8, 6.5, 8);
-  ellipse(picture, middle, y + 32, 12.5, 19);
-  bar(picture, middle - 5, y + 44, middle - 8, y + 99, 5);
-  bar(picture, middle + 5, y + 44, middle + 8, y + 99, 5);
-}
 void draw_box(std::vector<guint8>& picture, int x, int y, int width, int height) {
   for (int row = y; row < y + height; ++row)
     std::fill_n(picture.begin() + static_cast<std::ptrdiff_t>(row) * kWide + x, width, kDark);
@@ -68,7 +46,8 @@ std::string caps() {
 // Frame `number` of a scene: drawn persons at `people`, a box at 20,100 where `thing`.
 GstBuffer* scene(int number, const std::vector<double>& people, bool thing = false) {
   std::vector<guint8> picture(static_cast<std::size_t>(kWide) * kHigh, kWall);
-  for (const double x : people) draw_person(picture, x, 90);
+  for (const double x : people)
+    cerberus::tests::draw_person({picture.data(), kWide, kHigh, kWide}, x, 90, kPersonHeight, kDark);
   if (thing) draw_box(picture, 20, 100, 60, 40);
   GstBuffer* buffer = frame(info_of(caps()), number);
   gst_buffer_fill(buffer, 0, picture.data(), picture.size());

@@ -32,6 +32,11 @@ std::optional<fs::path> data_folder() {
   return first_there(places("CERBERUS_DATA", {fs::path(CERBERUS_SOURCE_ROOT) / ".." / "shared" / "data"}));
 }
 
+std::optional<fs::path> models_folder() {
+  return first_there(
+      places("CERBERUS_MODELS", {fs::path(CERBERUS_SOURCE_ROOT) / ".." / "shared" / "models"}));
+}
+
 std::optional<fs::path> vtest() {
   std::vector<fs::path> usual{fs::path(CERBERUS_BUILD_ROOT) / "media" / "vtest.avi"};
   if (const auto data = data_folder()) usual.push_back(*data / "pets09_s2l1_view1" / "vtest.avi");

@@ -13,6 +13,9 @@ namespace cerberus::tests {
 // checkout.
 std::optional<std::filesystem::path> data_folder();
 
+// The folder of published networks: the environment's CERBERUS_MODELS; else ../shared/models beside the checkout.
+std::optional<std::filesystem::path> models_folder();
+
 // vtest.avi, people on a campus seen by a still camera: the environment's CERBERUS_VIDEO; else what `pipelines/setup`
 // put into the build folder; else the one of the data folder or of Debian's package opencv-doc.
 std::optional<std::filesystem::path> vtest();
@@ -23,6 +26,8 @@ std::optional<std::string> vtest_source();
 inline constexpr char kNoVtest[] =
     "no vtest.avi (`pipelines/setup video FOLDER` fetches it; CERBERUS_VIDEO names its place)";
 inline constexpr char kNoData[] = "no research data (CERBERUS_DATA names its folder)";
+
+inline constexpr char kNoModels[] = "no published networks (CERBERUS_MODELS names their folder)";
 
 // What a program needs that judges what is found on real video.
 struct RealVideo {

@@ -98,7 +98,7 @@ Reading read(const std::vector<Output>& outputs, PersonClass person = {}) {
   NetworkReader reader(kInput, person);
   Reading reading;
   reading.wrong = reader.read(given, kThreshold, reading.hits).value_or("");
-  reading.takes_bytes = reader.takes_bytes();
+  reading.takes_bytes = reader.usual_input().scale[0] == 1;
   return reading;
 }
 
@@ -360,6 +360,42 @@ START_TEST(numbers_that_are_not_finite_are_no_boxes) {
 }
 END_TEST
 
+// OpenCV gives boxes in shares, and scores of classes that are multiplied by the object's already.
+START_TEST(each_output_of_darknet_is_a_list_of_boxes) {
+  std::vector<std::vector<float>> first(12, {.5f, .5f, .2f, .3f, .01f, 0, 0}), second(6, first[0]);
+  first[5] = {26 / 96.f, 26 / 64.f, 12 / 96.f, 32 / 64.f, .9f, .72f, 0};
+  second[2] = {65 / 96.f, 40 / 64.f, 30 / 96.f, 20 / 64.f, .95f, 0, .9f};
+  const std::vector<Output> outputs{rows_of(first), rows_of(second)};
+  const auto read_darknet = [&](PersonClass person, int classes) {
+    std::vector<NetworkOutput> given;
+    for (const Output& output : outputs) given.push_back({output.values, output.shape});
+    NetworkReader reader(kInput, person, classes);
+    Reading reading;
+    reading.wrong = reader.read(given, kThreshold, reading.hits).value_or("");
+    ck_assert_double_eq(reader.usual_input().scale[0], 1 / 255.0);
+    return reading;
+  };
+  const Reading person = read_darknet({}, 2), car = read_darknet({.number = 1, .classes = 2}, 2);
+  ck_assert(person.wrong.empty() && person.hits.size() == 1 && car.hits.size() == 1);
+  ck_assert_double_eq_tol(person.hits[0].box.x, 20, 1e-4);
+  ck_assert_double_eq_tol(person.hits[0].box.height, 32, 1e-4);
+  ck_assert_double_eq_tol(person.hits[0].score, .72, 1e-6);
+  ck_assert_double_eq_tol(car.hits[0].box.width, 30, 1e-4);
+  ck_assert(read_darknet({}, 3).wrong.find("a box has 8 numbers by its configuration") != std::string::npos);
+  ck_assert(read_darknet({.number = 2, .classes = 3}, 2).wrong.find("it has 2 classes") != std::string::npos);
+}
+END_TEST
+
+START_TEST(numbers_for_the_planes_are_read_in_every_locale) {
+  const auto one = plane_numbers("0.5"), three = plane_numbers(" 103.53, 116.28,-1e2 ");
+  ck_assert(one && (*one)[0] == .5 && (*one)[2] == .5);
+  ck_assert(three && (*three)[0] == 103.53 && (*three)[1] == 116.28 && (*three)[2] == -100);
+  for (const char* wrong :
+       {"", ",", "1,2", "1,2,3,4", "1,2,", "1;2;3", "x", "1 2 3", "nan", "inf,0,0", "0x1p"})
+    ck_assert_msg(!plane_numbers(wrong), "%s", wrong);
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "network_output",
@@ -372,6 +408,6 @@ int main() {
        boxes_of_yolox_are_decoded_and_its_pictures_have_values_to_255,
        a_box_that_is_clipped_away_at_the_edge_is_left_out_and_ends_no_stream,
        a_later_run_most_of_whose_boxes_have_no_size_is_refused,
-       what_cannot_be_read_is_refused_with_its_shape_and_the_reason,
-       numbers_that_are_not_finite_are_no_boxes});
+       what_cannot_be_read_is_refused_with_its_shape_and_the_reason, numbers_that_are_not_finite_are_no_boxes,
+       each_output_of_darknet_is_a_list_of_boxes, numbers_for_the_planes_are_read_in_every_locale});
 }

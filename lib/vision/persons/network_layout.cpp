@@ -15,7 +15,8 @@ constexpr int kBox = 4;      // numbers of a box
 constexpr int kCorners = 6;  // numbers of a box end to end: corners, score, class
 constexpr int kSsd = 7;      // numbers of a box of SSD
 constexpr int kCoco = 80;    // classes of the data set that most networks are trained with
-// What rounding in a network adds to an edge, in pixels or shares. Derived: ten times what half precision adds to 1.
+// What rounding in a network adds to an edge, in pixels or shares, and to a score. Derived: ten times what half precision
+// adds to 1.
 constexpr double kRounding = 0.01;
 // The largest coordinate that can be a share: boxes go a little beyond the picture.
 constexpr double kLargestShare = 1.5;
@@ -28,13 +29,6 @@ constexpr double kFarthestOffset = 1.0 / 8;
 // Sides of the cells in pixels: YOLO 5 to 11 and X; tiny ones; those with a fourth size.
 constexpr std::array<std::array<int, 4>, 5> kCells{
     {{8, 16, 32, 0}, {16, 32, 0, 0}, {8, 16, 32, 64}, {4, 8, 16, 32}, {8, 16, 0, 0}}};
-
-int count_cells(Size input, std::span<const int> sides) {
-  int cells = 0;
-  for (const int side : sides)
-    if (side > 0) cells += ((input.width + side - 1) / side) * ((input.height + side - 1) / side);
-  return cells;
-}
 
 // 1, 3 (YOLO 3, 5 and 7), or 0: no YOLO of this input has so many boxes.
 int boxes_per_cell(Size input, int boxes) {
@@ -268,6 +262,33 @@ std::optional<NetworkTable> table_of(const NetworkOutput& output, int numbers, b
   const auto lengths = two_lengths(output.shape);
   if (!lengths || (by_box ? lengths->width : lengths->height) != numbers) return std::nullopt;
   return NetworkTable{output.values, by_box ? lengths->height : lengths->width, numbers, by_box};
+}
+
+std::optional<NetworkTable> table_of_boxes(const NetworkOutput& output, int boxes, bool by_box) {
+  const auto lengths = two_lengths(output.shape);
+  if (!lengths || (by_box ? lengths->height : lengths->width) != boxes) return std::nullopt;
+  return NetworkTable{output.values, boxes, by_box ? lengths->width : lengths->height, by_box};
+}
+
+bool is_score(double value) {
+  return !std::isfinite(value) || (value >= -kRounding && value <= 1 + kRounding);
+}
+
+int count_cells(Size input, std::span<const int> sides) {
+  int cells = 0;
+  for (const int side : sides)
+    if (side > 0) cells += ((input.width + side - 1) / side) * ((input.height + side - 1) / side);
+  return cells;
+}
+
+NetworkCell cell_at(Size input, std::span<const int> sides, int number) {
+  for (const int side : sides) {
+    if (side <= 0) break;
+    const int columns = (input.width + side - 1) / side, rows = (input.height + side - 1) / side;
+    if (number < columns * rows) return {number % columns, number / columns, side};
+    number -= columns * rows;
+  }
+  return {};
 }
 
 std::optional<std::span<const int>> cells_of(Size input, int boxes) {

@@ -63,8 +63,21 @@ struct NetworkLayout {
   bool takes_bytes = false;           // pictures have values from 0 to 255, not to 1
 };
 
-// The output as a table of boxes with so many numbers. nullopt: it has another shape.
+// The output as a table of boxes with so many numbers, or of so many boxes. nullopt: it has another shape.
 std::optional<NetworkTable> table_of(const NetworkOutput& output, int numbers, bool by_box);
+std::optional<NetworkTable> table_of_boxes(const NetworkOutput& output, int boxes, bool by_box);
+
+// Whether a number can be a score, 0 to 1 but for rounding. What is not finite is no score of a person, and no mistake of
+// the layout.
+bool is_score(double value);
+
+// The cells of an input of this size. Sides of 0 are none.
+int count_cells(Size input, std::span<const int> sides);
+// The cell of this number, below count_cells(): all sides row by row, the first side first.
+struct NetworkCell {
+  int column = 0, row = 0, side = 0;
+};
+NetworkCell cell_at(Size input, std::span<const int> sides, int number);
 
 // Sides of the cells of a network with one box for each cell and an input of this size: 0 behind the last. nullopt: such
 // a network has another number of boxes.

@@ -8,9 +8,6 @@ namespace cerberus::vision {
 
 namespace {
 
-// What rounding in a network adds to a score. Derived: ten times what half precision does.
-constexpr double kRounding = 0.01;
-
 std::size_t size_of(const std::vector<int>& shape) {
   std::size_t size = 1;
   for (const int n : shape) size *= n > 0 ? static_cast<std::size_t>(n) : 0;
@@ -26,26 +23,13 @@ std::string shapes_of(std::span<const NetworkOutput> outputs) {
   return all;
 }
 
-// What is not finite is no score of a person, and no mistake of the layout.
-bool is_score(double value) {
-  return !std::isfinite(value) || (value >= -kRounding && value <= 1 + kRounding);
-}
-
 // Boxes of YOLOX that are not decoded: cells of all sides row by row, the smallest first.
 // x = (cell + dx) side, width = exp(dw) side.
 Box decoded(const NetworkTable& table, int i, Size input, std::span<const int> sides) {
-  int cell = i;
-  for (const int side : sides) {
-    const int columns = (input.width + side - 1) / side, rows = (input.height + side - 1) / side;
-    if (cell >= columns * rows) {
-      cell -= columns * rows;
-      continue;
-    }
-    const double width = std::exp(table.at(i, 2)) * side, height = std::exp(table.at(i, 3)) * side;
-    return {(cell % columns + table.at(i, 0)) * side - width / 2,
-            (cell / columns + table.at(i, 1)) * side - height / 2, width, height};
-  }
-  return {};
+  const NetworkCell cell = cell_at(input, sides, i);
+  const double width = std::exp(table.at(i, 2)) * cell.side, height = std::exp(table.at(i, 3)) * cell.side;
+  return {(cell.column + table.at(i, 0)) * cell.side - width / 2,
+          (cell.row + table.at(i, 1)) * cell.side - height / 2, width, height};
 }
 
 // A network that returns boxes all over the picture gives each a size, or its boxes are not decoded. Lists of found
@@ -76,9 +60,8 @@ Box box_of(const NetworkTable& table, int i, const NetworkLayout& layout, Size i
 }  // namespace
 
 // Returns what is wrong.
-std::string NetworkReader::read_rows(std::span<const NetworkOutput> outputs, double threshold,
-                                     std::vector<PersonDetection>& hits) const {
-  const NetworkLayout& layout = *layout_;
+std::string NetworkReader::read_rows(const NetworkLayout& layout, std::span<const NetworkOutput> outputs,
+                                     double threshold, std::vector<PersonDetection>& hits) const {
   const auto count = static_cast<int>(outputs.size());
   if (layout.boxes_output >= count || layout.scores_output >= count) return "there are fewer than before";
   const auto boxes =
@@ -105,14 +88,55 @@ std::string NetworkReader::read_rows(std::span<const NetworkOutput> outputs, dou
   return {};
 }
 
+std::string NetworkReader::decide(std::span<const NetworkOutput> outputs) {
+  std::string wrong;
+  if (darknet_classes_ > 0) {
+    decide_darknet(outputs, wrong);
+  } else if (nanodet_ = find_nanodet(outputs, input_, person_, wrong); !nanodet_ && wrong.empty()) {
+    if (const auto layout = decide_layout(outputs, input_, person_, wrong)) layouts_.push_back(*layout);
+  }
+  return wrong;
+}
+
+// OpenCV decodes the yolo layers, and multiplies the scores of classes by the object's.
+void NetworkReader::decide_darknet(std::span<const NetworkOutput> outputs, std::string& wrong) {
+  constexpr int kBoxAndObject = 5;
+  if (person_.number >= darknet_classes_ || person_.classes > darknet_classes_) {
+    wrong = "it has " + std::to_string(darknet_classes_) + " classes, and the labels name " +
+            std::to_string(person_.classes);
+    return;
+  }
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const int numbers = kBoxAndObject + darknet_classes_;
+    if (!table_of(outputs[i], numbers, true)) {
+      wrong = "a box has " + std::to_string(numbers) + " numbers by its configuration";
+      return;
+    }
+    NetworkLayout layout;
+    layout.boxes_output = layout.scores_output = static_cast<int>(i);
+    layout.box_numbers = layout.score_numbers = numbers;
+    layout.in_shares = true;
+    layout.score = kBoxAndObject + std::max(person_.number, 0);
+    layouts_.push_back(layout);
+  }
+}
+
+NetworkInput NetworkReader::usual_input() const {
+  if (nanodet_) return {kNanodetMean, kNanodetScale};
+  if (!layouts_.empty() && layouts_.front().takes_bytes) return {.scale = {1, 1, 1}};
+  return {};
+}
+
 std::optional<std::string> NetworkReader::read(std::span<const NetworkOutput> outputs, double threshold,
                                                std::vector<PersonDetection>& hits) {
   std::string wrong;
   for (const NetworkOutput& output : outputs)
     if (output.values.size() != size_of(output.shape)) wrong = "the shape has another size than the numbers";
-  if (wrong.empty() && !layout_) layout_ = decide_layout(outputs, input_, person_, wrong);
+  if (wrong.empty() && layouts_.empty() && !nanodet_) wrong = decide(outputs);
   const std::size_t before = hits.size();
-  if (wrong.empty() && layout_) wrong = read_rows(outputs, threshold, hits);
+  if (wrong.empty() && nanodet_) wrong = read_nanodet(*nanodet_, outputs, input_, threshold, hits);
+  for (const NetworkLayout& layout : layouts_)
+    if (wrong.empty()) wrong = read_rows(layout, outputs, threshold, hits);
   if (wrong.empty()) return std::nullopt;
   hits.resize(before);
   return shapes_of(outputs) + " cannot be read: " + wrong + ".";
