@@ -24,6 +24,7 @@ void Detector::set_parameters(const DetectorParameters& parameters) {
   regions_.set_parameters(parameters.detection);
   tracker_.set_parameters(parameters.tracking);
   edge_ = parameters.edge;
+  mechanisms_ = parameters.mechanisms;
 }
 
 void Detector::reset() {
@@ -118,6 +119,7 @@ void Detector::find_foreground(Analysis& record, const DetectorFrame& frame) {
   input.seconds = frame.seconds;
   input.frames = differences.result.frames;
   input.excluded = burnt_in_.boxes();
+  input.mechanisms = mechanisms_;
   Foreground& out = record.foreground.write();
   out.blurred =
       differences.blurred || options_.foreground.background_model;  // which compares blurred pictures

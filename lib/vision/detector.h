@@ -144,6 +144,7 @@ class Detector {
   SceneCalm calm_;
   std::vector<Box> tracked_;  // the tracks' boxes of the last frame
   BoxEdgeParameters edge_;
+  ForegroundMechanisms mechanisms_;
   Size foreground_size_, regions_size_;
   Sequence differences_sequence_, foreground_sequence_, regions_sequence_;
   threads::Pool<Analysis> records_;

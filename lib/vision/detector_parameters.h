@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// All tuned numbers of detection and tracking; tests/bench/parameters.h gives them names.
+// What benches may change: tuned numbers of detection and tracking, which tests/bench/parameters.h names, and mechanisms.
 #pragma once
 
+#include "vision/background/mechanisms.h"
 #include "vision/detection/region_parameters.h"
 #include "vision/geometry/box_edge.h"
 #include "vision/tracking/tracking_parameters.h"
@@ -12,6 +13,7 @@ struct DetectorParameters {
   DetectionParameters detection;
   TrackingParameters tracking;
   BoxEdgeParameters edge;
+  ForegroundMechanisms mechanisms;
 };
 
 }  // namespace cerberus::vision

@@ -76,6 +76,7 @@ struct BackgroundModel::State {
   BitMask mask;               // D(k) > Th in the model's coordinates, then the foreground
   BitMask absorb;             // pixels to be taken over at once
   BitMask covered;            // one row: the pixels that the frame shows
+  ForegroundMechanisms mechanisms;
   Mosaic mosaic;
   Warp warp;
   BackgroundLight light;
@@ -164,7 +165,7 @@ void BackgroundModel::State::follow_camera(const BackgroundInput& in) {
   if (std::abs(tx) > kParameters.shift || std::abs(ty) > kParameters.shift) {
     const int dx = static_cast<int>(std::lround(tx)), dy = static_cast<int>(std::lround(ty));
     const Transform shift = Transform::translation(dx, dy);
-    mosaic.store(pixels(), shift);
+    if (mechanisms.mosaic) mosaic.store(pixels(), shift);
     shift_content<std::uint16_t>(mean.view(), dx, dy, 0);
     for (auto* plane : {&spread, &age, &quiet}) shift_content<std::uint8_t>(plane->view(), dx, dy, 0);
     mosaic.restore(pixels(), shift);
@@ -176,7 +177,7 @@ void BackgroundModel::State::follow_camera(const BackgroundInput& in) {
 // Interpolates the model into the frame's own coordinates: only after much rotation or zoom.
 void BackgroundModel::State::resample() {
   if (!warp.prepare(to_frame, size)) return restart();
-  mosaic.store(pixels(), to_frame);
+  if (mechanisms.mosaic) mosaic.store(pixels(), to_frame);
   light.load(mean.view());
   warp.bilinear(light.background(), frame.view());
   for (int y = 0; y < size.height; ++y)
@@ -271,7 +272,7 @@ void BackgroundModel::State::classify(const BackgroundInput& in) {
   input.picture = in.picture, input.difference = in.difference;
   input.sigma = in.sigma, input.still = in.still, input.frames = frames;
   input.frame = frame.view(), input.background = light.background(), input.model = pixels();
-  input.spans = warp.spans();
+  input.spans = warp.spans(), input.mechanisms = mechanisms;
   input.blocks = blocks, input.columns = columns, input.rows = rows;
   classification.classify(input, mask.view(), absorb.view());
 }
@@ -300,6 +301,7 @@ void BackgroundModel::State::learn(const BackgroundInput& in) {
 void BackgroundModel::update(const BackgroundInput& in, MutableGrayView mask) {
   State& s = *state_;
   s.prepare(mask.size());
+  s.mechanisms = in.mechanisms;
   s.measure_period(in.seconds);
   const bool other_light = !in.still && s.light.is_different();
   if (other_light) s.light.adopt(s.pixels(), s.mosaic);
@@ -315,11 +317,11 @@ void BackgroundModel::update(const BackgroundInput& in, MutableGrayView mask) {
   if (!in.still && s.frames > 1) {
     // Lamps may light the frame in bands, which adopt() does not remove; they would bias the alignment.
     if (other_light) s.light.relight_rows(s.frame.view(), s.warp.spans());
-    s.align(in, blurred);
+    if (s.mechanisms.alignment) s.align(in, blurred);
     if (other_light) s.light.load(s.mean.view());
   }
-  const bool step =
-      s.frames > 1 && s.light.compensate(s.pixels(), s.mosaic, s.frame.view(), s.warp.spans(), in.still);
+  const bool step = s.frames > 1 && s.mechanisms.light &&
+                    s.light.compensate(s.pixels(), s.mosaic, s.frame.view(), s.warp.spans(), in.still);
   s.mosaic.verify(s.pixels(), s.frame.view(), s.light.background(), s.warp.spans());
   if (s.warp.is_identity()) {
     binarise(in.difference, in.threshold, s.mask.view());

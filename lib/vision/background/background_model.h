@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 
+#include "vision/background/mechanisms.h"
 #include "vision/geometry/box.h"
 #include "vision/geometry/transform.h"
 #include "vision/image/image.h"
@@ -22,6 +23,7 @@ struct BackgroundInput {
   double seconds = 0;   // since frame k-1; 0: unknown
   // Analysis pixels of frame k that show no scene (burnt_in.h): they are no foreground and are not learnt.
   std::span<const Box> excluded{};
+  ForegroundMechanisms mechanisms{};
 };
 
 // A pixel takes 5 bytes: mean (8.8 fixed point), spread, age (frames learnt) and quiet (frames since it moved). The

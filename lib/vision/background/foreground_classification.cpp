@@ -154,7 +154,7 @@ void ForegroundClassification::compare(const ClassificationInput& in, BitView mo
   }
   clear_outside(weak_.view(), in.spans);
   clear_outside(strong_.view(), in.spans);
-  if (!in.still) suppress_blur(in);
+  if (!in.still && in.mechanisms.motion_blur) suppress_blur(in);
 }
 
 // The registration error around each block of a row: |e| over gradient where nothing moves, of 3 x 3 blocks. The part
@@ -217,15 +217,15 @@ void ForegroundClassification::decide(const ClassificationInput& in, MutableBitV
   morphology_.vote(seeds, width, p.neighbours);
   morphology_.reconstruct(seeds, weak_.view());
   std::memcpy(weak_.view().data, seeds.data, weak_.bytes());
-  if (in.still)
+  if (in.still && in.mechanisms.candidate_background)
     candidates_.update({in.frame, seeds, in.model.age, in.model.quiet}, noise_);
   else
     candidates_.reset();
-  const ComponentInput planes{
-      in.frame,     in.background,
-      in.model.age, in.model.quiet,
-      in.still,     !in.still && unreliable_ < p.most_unreliable * in.columns * in.rows,
-      in.spans,     candidates_.lasting()};
+  ComponentInput planes{in.frame,     in.background,
+                        in.model.age, in.model.quiet,
+                        in.still,     !in.still && unreliable_ < p.most_unreliable * in.columns * in.rows,
+                        in.spans,     candidates_.lasting()};
+  planes.mechanisms = in.mechanisms.components;
   const bool young = components_.classify(planes, windows_, seeds, absorb);
   const int side = std::max(3, p.closing * width / 320 | 1);
   std::memcpy(mask.data, seeds.data, strong_.bytes());

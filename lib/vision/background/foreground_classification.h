@@ -10,6 +10,7 @@
 
 #include "vision/background/background_kernels.h"
 #include "vision/background/candidate_background.h"
+#include "vision/background/mechanisms.h"
 #include "vision/background/mosaic.h"
 #include "vision/background/motion_blur.h"
 #include "vision/components/components.h"
@@ -35,6 +36,7 @@ struct ClassificationInput {
   std::span<const RowSpan> spans;  // the columns that the frame covers, per row
   std::span<const BlockSums> blocks;
   int columns = 0, rows = 0;  // of blocks
+  ForegroundMechanisms mechanisms{};
 };
 
 // A pixel is foreground by these rules:

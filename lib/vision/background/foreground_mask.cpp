@@ -52,7 +52,7 @@ ForegroundMaskResult ForegroundMask::update(const ForegroundMaskInput& input, Mu
   if (uses_background(s.options)) {
     if (input.frames <= 1) s.background.reset();
     s.background.update({input.picture, input.current, result.threshold, result.sigma, input.motion,
-                         input.still, input.seconds, input.excluded},
+                         input.still, input.seconds, input.excluded, input.mechanisms},
                         mask);
     if (result.ready) return result;
   }

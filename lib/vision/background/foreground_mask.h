@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 
+#include "vision/background/mechanisms.h"
 #include "vision/change/fuzzy_threshold.h"
 #include "vision/geometry/box.h"
 #include "vision/geometry/transform.h"
@@ -32,6 +33,7 @@ struct ForegroundMaskInput {
   int frames = 0;                   // DifferenceResult::frames
   double seconds = 0;               // since frame k-1; 0: unknown
   std::span<const Box> excluded{};  // see BackgroundInput
+  ForegroundMechanisms mechanisms{};
 };
 
 struct ForegroundMaskResult {

@@ -140,8 +140,9 @@ void ForegroundComponents::decide(const ComponentInput& input, const Component& 
   const bool young = evidence.young_pixels > area / 2, newest = evidence.newest_pixels > area / 2;
   const bool at_edge = c.left == 0 || c.top == 0 || c.right == size.width || c.bottom == size.height;
   const ComponentOrigins::Overlap& before = evidence.overlap;
-  const bool inside = input.still && (before.differed ? 2 * before.inside > before.differed
-                                                      : young || (moved_ == 0 && !at_edge));
+  const bool inside =
+      input.mechanisms.origins && input.still &&
+      (before.differed ? 2 * before.inside > before.differed : young || (moved_ == 0 && !at_edge));
   evidence.origin = inside ? ComponentOrigins::Origin::inside : ComponentOrigins::Origin::outside;
   const auto exceeds = [&](int a, int b, double ratio, double margin) {
     return a > ratio * b + margin * evidence.compared;
@@ -154,7 +155,8 @@ void ForegroundComponents::decide(const ComponentInput& input, const Component& 
       evidence.recent_pixels >=
       std::max<double>(p.least_moved, std::min<double>(p.recent_share * area, evidence.outline));
   // At the picture's edge the motion of a place that an object has just left is that object's last.
-  const bool was_empty = exceeds(background, frame, p.empty_ratio, p.empty_margin) && young;
+  const bool was_empty =
+      input.mechanisms.was_empty && young && exceeds(background, frame, p.empty_ratio, p.empty_margin);
   const double least =
       was_empty && at_edge ? std::min<double>(p.empty_share * area, evidence.outline) : p.moving_share * area;
   evidence.moving = evidence.moving_pixels >= std::max<double>(p.least_moved, least);
@@ -233,11 +235,11 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
   if (!input.still && ++moved_ == kParameters.shake) origins_.reset();
   measure(input, windows, mask);
   for (std::size_t i = 0; i < components.size(); ++i) decide(input, components[i], evidence_[i]);
-  if (input.is_aligned()) doubt_edges(input, mask);
+  if (input.is_aligned() && input.mechanisms.sides_go_on) doubt_edges(input, mask);
   if (input.still) {
     if (components.size() <= kParameters.most_components) {
-      find_ghosts();
-      resolve_origins();
+      if (input.mechanisms.find_ghosts) find_ghosts();
+      if (input.mechanisms.resolve_origins) resolve_origins();
     }
     for (const Run& r : labeller_.runs()) origins_.record(r, evidence_[r.component].origin);
   }
@@ -253,9 +255,10 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
       clear_bits(mask.row(r.row), r.first, r.end);
   }
   // Not only where the picture is aligned: the contrasts that a ghost's outline must have are strict enough.
-  resting_ghosts_.remove({input.frame, input.background, input.quiet, input.still ? GrayView{} : input.age,
-                          input.columns(), input.lasting},
-                         windows.recent, labeller_, mask, absorb);
+  if (input.mechanisms.resting_ghosts)
+    resting_ghosts_.remove({input.frame, input.background, input.quiet, input.still ? GrayView{} : input.age,
+                            input.columns(), input.lasting},
+                           windows.recent, labeller_, mask, absorb);
   origins_.forget(absorb);
   if (input.still) moved_ = 0;
   return young_objects;
@@ -295,6 +298,7 @@ void ForegroundComponents::absorb_rest(const ComponentInput& input, const FrameW
 
 void ForegroundComponents::merge_neighbours(const ComponentInput& input, const FrameWindows& windows,
                                             MutableBitView closed, MutableBitView mask) {
+  if (!input.mechanisms.merge_neighbours) return;
   const Parameters& p = kParameters;
   labeller_.find(closed, input.frame.width);
   const auto components = labeller_.components();
@@ -347,7 +351,7 @@ void ForegroundComponents::merge_neighbours(const ComponentInput& input, const F
 
 void ForegroundComponents::join_fragments(const ComponentInput& input, MutableBitView closed,
                                           MutableBitView mask) {
-  if (!input.still || found_ < 2) return;
+  if (!input.mechanisms.join_fragments || !input.still || found_ < 2) return;
   const Size size = input.frame.size();
   const auto components = labeller_.find(
       closed, size.width, static_cast<std::uint32_t>(kParameters.least_fragment * size.area()));

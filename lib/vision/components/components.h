@@ -33,6 +33,18 @@ struct FrameWindows {
   static FrameWindows of(double seconds);
 };
 
+// What may be left out: see background/mechanisms.h.
+struct ComponentMechanisms {
+  bool was_empty = true;         // what left the picture moves no more: decide()
+  bool sides_go_on = true;       // component_sides.h
+  bool origins = true;           // component_origins.h
+  bool find_ghosts = true;       // by components of the same origin
+  bool resolve_origins = true;   // of objects whose ghost was found
+  bool resting_ghosts = true;    // resting_ghosts.h
+  bool merge_neighbours = true;  // of a young background
+  bool join_fragments = true;    // fragment_joining.h
+};
+
 struct ComponentInput {
   GrayView frame, background;  // blurred alike, under the same light
   GrayView age;                // frames for which the model has learnt a pixel
@@ -43,6 +55,7 @@ struct ComponentInput {
   std::span<const RowSpan> visible{};
   // Foreground that has shown the same for long in all, between those who pass; empty: not known.
   BitView lasting{};
+  ComponentMechanisms mechanisms{};
 
   // Edges of the scene lie at the same pixels of the frame and of the background.
   bool is_aligned() const { return still || registered; }
