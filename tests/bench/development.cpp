@@ -2,27 +2,31 @@
 // The detector on every development sequence: numbers and mechanisms are chosen by these means. A run is one sequence at
 // one analysis width, as it is or mirrored; two runs of one sequence often differ by more than two versions of a detector.
 //
-//   bench-development [--widths 300,320,344] [--only NAME,NAME] [--set STAGE.NAME=VALUE]...
+//   bench-development [--widths 300,320,344] [--only NAME,NAME] [--set STAGE.NAME=VALUE]... [--without NAME,NAME]...
+//   bench-development [--widths 300,320,344] [--only NAME,NAME] --table
 //   bench-development [--widths 320] [--only NAME,NAME] --elements "motiondetect ! personverify"
-//   bench-development [--widths 320] [--only NAME,NAME] --calm yes
+//   bench-development [--widths 320] [--only NAME,NAME] --calm
 //
-// --set: prints also, for each kind of sequence, the mean difference to the usual numbers, paired by run, with its standard
-// error over sequences. --calm: prints how calm the scenes are instead. --elements: measures a launch line, in which motiondetect has the width. With no argument: widths 320,
-// judged.
+// --set, --without (mechanisms.h): prints also, for each kind of sequence, the mean difference to the usual detector, paired
+// by run, with its standard error over sequences. --table: what the absence of each mechanism does to the means, with the
+// lines and tuned numbers that it takes. --elements: measures a launch line, in which motiondetect has the width. --calm:
+// prints how calm the scenes are instead. With no argument: widths 320, judged.
 #include <gst/gst.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "asked.h"
+#include "development_runs.h"
 #include "development_sequences.h"
-#include "set_detector.h"
+#include "mechanisms.h"
+#include "parameters.h"
 #include "support/data.h"
 
 using namespace cerberus;
@@ -31,15 +35,15 @@ using namespace cerberus::bench;
 namespace {
 
 // Seen: .40, .67 and .36; 52 identities a minute. A change that costs more than this is no accident.
-constexpr double kCalm = .8;  // share of the corners; see SceneCalm
 constexpr double kMota = .37, kIdf1 = .65, kRecall = .34, kIdentities = 60;
+constexpr double kCalm = .8;  // share of the corners; see SceneCalm
 
 struct Options {
   std::vector<int> widths{320};  // analysis pixels
   std::vector<std::string> only;
   std::string elements;
-  bool calm = false;
-  std::optional<vision::DetectorParameters> numbers;
+  std::optional<DetectorSettings> other;  // what the usual detector is compared with
+  bool table = false, calm = false;
 };
 
 std::vector<std::string> parts(const std::string& text) {
@@ -52,24 +56,32 @@ std::vector<std::string> parts(const std::string& text) {
 std::optional<Options> read_options(int argc, char** argv) {
   Options options;
   for (int i = 1; i < argc; ++i) {
-    const std::string name = argv[i], value = ++i < argc ? argv[i] : "";
+    const std::string name = argv[i];
+    const bool alone = name == "--table" || name == "--calm";
+    const std::string value = !alone && ++i < argc ? argv[i] : "";
     std::string wrong;
-    if (name == "--only" && !value.empty()) {
+    if (name == "--table") {
+      options.table = true;
+    } else if (name == "--calm") {
+      options.calm = true;
+    } else if (name == "--only" && !value.empty()) {
       options.only = parts(value);
     } else if (name == "--elements" && !value.empty()) {
       options.elements = value;
-    } else if (name == "--calm" && value == "yes") {
-      options.calm = true;
     } else if (name == "--widths" && !value.empty()) {
       options.widths.clear();
       for (const std::string& width : parts(value)) options.widths.push_back(std::atoi(width.c_str()));
       if (std::ranges::min(options.widths) < 48) wrong = value + ": a width is a number of pixels from 48 on";
     } else if (name == "--set" && !value.empty()) {
-      if (!options.numbers) options.numbers.emplace();
-      wrong = set_number(*options.numbers, value);
+      if (!options.other) options.other.emplace();
+      wrong = set_number(options.other->numbers, value);
+    } else if (name == "--without" && !value.empty()) {
+      if (!options.other) options.other.emplace();
+      wrong = leave_out(*options.other, value);
     } else {
       wrong = name + " is no option, or has no value";
     }
+    if (options.table && options.other) wrong = "--table compares with what it leaves out itself";
     if (!wrong.empty()) {
       std::fprintf(stderr, "bench-development: %s\n", wrong.c_str());
       return std::nullopt;
@@ -78,99 +90,12 @@ std::optional<Options> read_options(int argc, char** argv) {
   return options;
 }
 
-// Figures of the runs of one sequence, in the same order for every detector.
+// Means of sequences.
 using Runs = std::vector<Figures>;
 
-double seconds_of(GstSample* sample) {
-  return static_cast<double>(GST_BUFFER_PTS(gst_sample_get_buffer(sample))) / GST_SECOND;
-}
-
-// A mirrored copy of a picture; lives until the next call.
-class Mirror {
- public:
-  vision::GrayView operator()(vision::GrayView picture) {
-    pixels_.resize(static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height));
-    for (int y = 0; y < picture.height; ++y)
-      std::reverse_copy(picture.row(y), picture.row(y) + picture.width,
-                        pixels_.data() + static_cast<std::ptrdiff_t>(y) * picture.width);
-    return {pixels_.data(), picture.width, picture.height, picture.width};
-  }
-
- private:
-  std::vector<std::uint8_t> pixels_;
-};
-
-// Every run sees each frame once it is decoded. Empty: the sequence could not be read.
-std::vector<Runs> measure_numbers(const DevelopmentSequence& sequence, const std::vector<int>& widths,
-                                  const std::vector<vision::DetectorParameters>& numbers) {
-  struct Variant {
-    bool mirrored;
-    SetDetector detector;
-    DevelopmentRun run;
-  };
-  std::vector<std::vector<Variant>> variants(numbers.size());
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    for (const int width : widths)
-      for (const bool mirrored : {false, true})
-        variants[i].push_back({mirrored, SetDetector(numbers[i], width), DevelopmentRun(sequence, mirrored)});
-  Mirror mirror;
-  const bool measured = for_each_sample(
-      sequence.source +
-          " ! videoconvert ! video/x-raw,format=I420 ! appsink name=out sync=false max-buffers=4",
-      [&](GstSample* sample, int) {
-        for (auto& of_numbers : variants)
-          for (Variant& v : of_numbers)
-            v.run.add(v.detector.find(sample,
-                                      v.mirrored ? SetDetector::View(std::ref(mirror)) : SetDetector::View()),
-                      size_of(sample).width, seconds_of(sample));
-      });
-  if (!measured) return {};
-  std::vector<Runs> runs;
-  for (const auto& of_numbers : variants) {
-    runs.emplace_back();
-    for (const Variant& v : of_numbers) runs.back().push_back(v.run.figures());
-  }
-  return runs;
-}
-
-std::vector<Runs> measure_elements(const DevelopmentSequence& sequence, const std::vector<int>& widths,
-                                   const std::string& elements) {
-  Runs runs;
-  for (const int width : widths)
-    for (const bool mirrored : {false, true}) {
-      std::string line = elements;
-      if (const std::size_t at = line.find("motiondetect"); at != std::string::npos)
-        line.insert(at + std::strlen("motiondetect"), " analysis-width=" + std::to_string(width));
-      DevelopmentRun run(sequence, mirrored);
-      if (!for_each_sample(sequence.source + " ! videoconvert" +
-                               (mirrored ? " ! videoflip video-direction=horiz ! videoconvert" : "") +
-                               " ! video/x-raw,format=I420 ! " + line + " ! appsink name=out sync=false",
-                           [&](GstSample* sample, int) {
-                             run.add(found_on(gst_sample_get_buffer(sample)), size_of(sample).width,
-                                     seconds_of(sample));
-                           }))
-        return {};
-      runs.push_back(run.figures());
-    }
-  return {runs};
-}
-
-// Prints how calm the scene is: median over the frames of all runs, and the share of them in which it is at least kCalm.
+// How calm the scene is: median over the frames of all runs, and the share of them in which it is at least kCalm.
 bool print_calm(const DevelopmentSequence& sequence, const std::vector<int>& widths) {
-  std::vector<double> shares;
-  for (const int width : widths)
-    for (const bool mirrored : {false, true}) {
-      SetDetector detector({}, width);
-      Mirror mirror;
-      if (!for_each_sample(
-              sequence.source +
-                  " ! videoconvert ! video/x-raw,format=I420 ! appsink name=out sync=false max-buffers=4",
-              [&](GstSample* sample, int) {
-                detector.find(sample, mirrored ? SetDetector::View(std::ref(mirror)) : SetDetector::View());
-                shares.push_back(detector.calm());
-              }))
-        return false;
-    }
+  std::vector<double> shares = measure_calm(sequence, widths);
   if (shares.empty()) return false;
   const auto calm = std::ranges::count_if(shares, [](double share) { return share >= kCalm; });
   const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
@@ -193,16 +118,62 @@ void print_figures(const char* what, Labels labels, const Figures& figures) {
     if (const char* name = figure_names(labels)[i]; *name) std::printf("  %s %.3f", name, figures[i]);
 }
 
-// The paired differences of sequences: their mean and its standard error.
+struct Difference {
+  double mean = 0, error = 0;
+};
+
+// Of one figure, paired by sequence: the mean and its standard error.
+Difference difference(const Runs& before, const Runs& after, std::size_t figure) {
+  const auto n = static_cast<double>(before.size());
+  Difference d;
+  for (std::size_t k = 0; k < before.size(); ++k) d.mean += (after[k][figure] - before[k][figure]) / n;
+  double squares = 0;
+  for (std::size_t k = 0; k < before.size(); ++k)
+    squares += std::pow(after[k][figure] - before[k][figure] - d.mean, 2);
+  if (n > 1) d.error = std::sqrt(squares / (n * (n - 1)));
+  return d;
+}
+
 void print_difference(Labels labels, const Runs& before, const Runs& after) {
-  const std::size_t n = before.size();
   for (std::size_t i = 0; i < Figures{}.size(); ++i) {
     if (!*figure_names(labels)[i]) continue;
-    double sum = 0, squares = 0;
-    for (std::size_t k = 0; k < n; ++k) sum += (after[k][i] - before[k][i]) / static_cast<double>(n);
-    for (std::size_t k = 0; k < n; ++k) squares += std::pow(after[k][i] - before[k][i] - sum, 2);
-    const double error = n > 1 ? std::sqrt(squares / static_cast<double>(n * (n - 1))) : 0;
-    std::printf("  %-20s %+.4f, standard error %.4f\n", figure_names(labels)[i], sum, error);
+    const Difference d = difference(before, after, i);
+    std::printf("  %-20s %+.4f, standard error %.4f\n", figure_names(labels)[i], d.mean, d.error);
+  }
+}
+
+// By labels, then by detector: a mean a sequence.
+using Means = std::array<std::vector<Runs>, kLabels.size()>;
+
+// detectors: the usual one, then one without each mechanism.
+void print_table(const Means& means) {
+  struct Column {
+    const char* name;
+    Labels labels;
+    std::size_t figure;
+    double factor;
+  };
+  constexpr Column kColumns[]{{"MOTA", Labels::all, 0, 100},
+                              {"IDF1", Labels::all, 1, 100},
+                              {"recall .5", Labels::one, 1, 100},
+                              {"identities/min", Labels::nobody, 0, 1}};
+  std::printf("\n  %-22s %5s %7s", "without", "lines", "numbers");
+  for (const Column& c : kColumns) std::printf(" %18s", c.name);
+  std::puts("   (mean difference +- standard error; points of 100)");
+  for (std::size_t i = 0; i < mechanisms().size(); ++i) {
+    const Mechanism& m = mechanisms()[i];
+    const Extent extent = extent_of(m, CERBERUS_SOURCE_ROOT);
+    std::printf("  %-22s %5d %7d", m.name, extent.lines, extent.numbers);
+    for (const Column& c : kColumns) {
+      const std::vector<Runs>& of = means[static_cast<std::size_t>(c.labels)];
+      if (of[0].empty()) {
+        std::printf(" %18s", "-");
+        continue;
+      }
+      const Difference d = difference(of[0], of[i + 1], c.figure);
+      std::printf("   %+7.2f +-%5.2f", c.factor * d.mean, c.factor * d.error);
+    }
+    std::puts("");
   }
 }
 
@@ -227,30 +198,32 @@ int main(int argc, char** argv) {
     std::printf("skipped: %s\n", tests::kNoData);
     return tests::kSkipped;
   }
-  std::vector<vision::DetectorParameters> numbers(1);
-  if (options->numbers) numbers.push_back(*options->numbers);
-  Asked asked;
-  bool measured = true;
-  std::array<std::vector<Runs>, kLabels.size()> means;  // by labels, then by numbers: a mean a sequence
-  for (auto& of_labels : means) of_labels.resize(numbers.size());
-  for (const DevelopmentSequence& sequence : development_sequences(*data)) {
-    if (!options->only.empty() && std::ranges::find(options->only, sequence.name) == options->only.end())
-      continue;
-    if (options->calm) {
-      measured = print_calm(sequence, options->widths) && measured;
-      continue;
-    }
-    const auto runs = options->elements.empty()
-                          ? measure_numbers(sequence, options->widths, numbers)
-                          : measure_elements(sequence, options->widths, options->elements);
-    measured = measured && !runs.empty();
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      means[static_cast<std::size_t>(sequence.labels)][i].push_back(mean(runs[i]));
-      print_figures(((i == 0 ? "" : "set: ") + sequence.name).c_str(), sequence.labels, mean(runs[i]));
+  std::vector<DetectorSettings> detectors(1);
+  if (options->other) detectors.push_back(*options->other);
+  if (options->table)
+    for (const Mechanism& m : mechanisms()) leave_out(detectors.emplace_back(), m.name);
+  std::vector<DevelopmentSequence> sequences = development_sequences(*data);
+  if (!options->only.empty())
+    std::erase_if(sequences, [&](const DevelopmentSequence& s) {
+      return std::ranges::find(options->only, s.name) == options->only.end();
+    });
+  if (options->calm)
+    return std::ranges::all_of(sequences, [&](const auto& s) { return print_calm(s, options->widths); }) ? 0
+                                                                                                         : 1;
+  const std::vector<SequenceMeans> measured = options->elements.empty()
+                                                  ? measure(sequences, options->widths, detectors)
+                                                  : measure(sequences, options->widths, options->elements);
+  Means means;
+  for (auto& of_labels : means) of_labels.resize(detectors.size());
+  for (std::size_t s = 0; s < sequences.size(); ++s)
+    for (std::size_t i = 0; i < measured[s].size(); ++i) {
+      means[static_cast<std::size_t>(sequences[s].labels)][i].push_back(measured[s][i]);
+      if (options->table && i > 0) continue;
+      print_figures(((i == 0 ? "" : "other: ") + sequences[s].name).c_str(), sequences[s].labels,
+                    measured[s][i]);
       std::puts("");
     }
-    std::fflush(stdout);
-  }
+  Asked asked;
   for (const Labels labels : kLabels) {
     const auto& of_labels = means[static_cast<std::size_t>(labels)];
     const Runs& usual = of_labels[0];
@@ -258,8 +231,9 @@ int main(int argc, char** argv) {
     print_figures(("mean of " + std::to_string(usual.size())).c_str(), labels, mean(usual));
     if (argc == 1) judge(labels, mean(usual), asked);
     std::puts("");
-    if (of_labels.size() > 1) print_difference(labels, usual, of_labels[1]);
+    if (options->other) print_difference(labels, usual, of_labels[1]);
   }
+  if (options->table) print_table(means);
   const int verdict = argc == 1 ? asked.verdict() : 0;
-  return measured ? verdict : 1;
+  return std::ranges::none_of(measured, &SequenceMeans::empty) ? verdict : 1;
 }

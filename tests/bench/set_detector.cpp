@@ -13,11 +13,24 @@ namespace cerberus::bench {
 
 using Time = vision::FrameHistory::Time;
 
-SetDetector::SetDetector(const vision::DetectorParameters& numbers, int analysis_width) {
-  options_.burnt_in = true;
+namespace {
+
+DetectorSettings settings_with(const vision::DetectorParameters& numbers) {
+  DetectorSettings settings;
+  settings.numbers = numbers;
+  return settings;
+}
+
+}  // namespace
+
+SetDetector::SetDetector(const vision::DetectorParameters& numbers, int analysis_width)
+    : SetDetector(settings_with(numbers), analysis_width) {}
+
+SetDetector::SetDetector(const DetectorSettings& settings, int analysis_width)
+    : options_(settings.options), camera_motion_(settings.camera_motion) {
   options_.analysis_width = analysis_width;
   detector_.set_options(options_);
-  detector_.set_parameters(numbers);
+  detector_.set_parameters(settings.numbers);
 }
 
 std::vector<Found> SetDetector::find(GstSample* sample, const View& view) {
@@ -56,7 +69,13 @@ std::vector<Found> SetDetector::find(GstSample* sample, const View& view) {
   }
   history_ = history;
   number_ = frame.number;
-  detector_.run(*record, frame);
+  if (camera_motion_) {
+    detector_.run(*record, frame);
+  } else {
+    record->camera.write().still = true;
+    detector_.complete(*record, frame, vision::Stage::regions);
+    detector_.track(*record, frame, record->regions->regions);
+  }
   calm_ = record->camera->calm;
   tracks_.assign(record->tracks->begin(), record->tracks->end());
   return found();

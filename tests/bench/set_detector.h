@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// vision::Detector as motiondetect uses it, but for its tuned numbers (parameters.h).
+// vision::Detector as motiondetect uses it, but for its tuned numbers (parameters.h) and mechanisms (mechanisms.h).
 #pragma once
 
 #include <gst/gst.h>
@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "mechanisms.h"
 #include "parameters.h"
 #include "people_sequences.h"
 #include "vision/detector.h"
@@ -24,6 +25,7 @@ class SetDetector {
   // analysis_width: that property of motiondetect; all others have their defaults.
   explicit SetDetector(const vision::DetectorParameters& numbers,
                        int analysis_width = vision::DetectorOptions{}.analysis_width);
+  SetDetector(const DetectorSettings& settings, int analysis_width);
 
   // What is found on an I420 frame, or in what `view` makes of its luma plane; nothing where it cannot be read.
   std::vector<Found> find(GstSample* sample, const View& view = {});
@@ -34,6 +36,7 @@ class SetDetector {
   std::vector<Found> found() const;
 
   vision::DetectorOptions options_;
+  bool camera_motion_;
   vision::Detector detector_;
   vision::FrameHistory history_;
   std::vector<vision::Track> tracks_;  // of the last picture
