@@ -33,6 +33,7 @@ class HogDetector : public vision::PersonDetector {
     // OpenCV's Mat takes no constant data; nothing writes through this one.
     const cv::Mat given(picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.data),
                         static_cast<std::size_t>(picture.stride));
+    scale *= scan_.enlargement;
     const cv::Size size(static_cast<int>(std::lround(scale * picture.width)),
                         static_cast<int>(std::lround(scale * picture.height)));
     const cv::Size padding(scan_.padding, scan_.padding);

@@ -21,6 +21,8 @@ struct HogScan {
   double scale_step = 1.07;  // from one scale of the pyramid to the next
   // Pixels around the picture that windows reach, a multiple of 8: a window is wider and higher than the person in it.
   int padding = 16;
+  // Of the picture beyond the scale that is asked for, which suits a body as high as Daimler's.
+  double enlargement = 1;
   // The part of the window that becomes a hit's box.
   vision::BodyShare share{};
 };

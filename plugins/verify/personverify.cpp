@@ -24,8 +24,9 @@
  * they stand: what is much higher or lower is no person, and hits down to .65 of `threshold` count where they are as high,
  * or show somebody who is known; a track that such a hit alone shows is published as it was.
  *
- * People are found by OpenCV's Daimler detector (histograms of oriented gradients, trained on that data set):
- * upright ones who are at least 24 pixels high. A look shows it up to two regions, as those near the camera and those far
+ * People are found by OpenCV's Daimler detector (histograms of oriented gradients, trained on that data set) or with
+ * `detector=hog` by its default people detector (the same, trained on INRIA's): upright ones who are at least 24 pixels
+ * high. A look shows it up to two regions, as those near the camera and those far
  * away need different scales; a network sees one. It costs up to 60 ms a look on one core. It does not see people who
  * sit or lie, or only their upper half.
  *
@@ -86,8 +87,7 @@
 #include <vector>
 
 #include "cerberus/private/element.hpp"
-#include "hog_detector.hpp"
-#include "model_detector.hpp"
+#include "detector_use.hpp"
 #include "shared/clock_times.hpp"
 #include "shared/complaint.hpp"
 #include "shared/properties.hpp"
@@ -122,20 +122,6 @@ constexpr double kMostRate = 10;
 constexpr double kUsualStep = 0.04;
 // A longer gap, in seconds, begins anew.
 constexpr double kLongestGap = 2;
-// Scores of the detectors: by default the least, and what counts as certain. Of Daimler: swept on TUD-Campus,
-// TUD-Stadtmitte and PETS09-S2L1 (1.7 finds more things that are none, 2.1 loses a tenth of the people). Of a model:
-// probabilities.
-constexpr double kDaimlerThreshold = 1.9, kDaimlerCertain = 4;
-constexpr double kModelThreshold = 0.4, kModelCertain = 1;
-// Part of the Daimler detector's window by which persons are followed, and the shares of that box above the head and below
-// the feet. Measured: medians of head and foot, -.026 and +.028 on PETS09-S2L1, -.035 and 0 on TUD-Campus, -.028 and +.035
-// on TUD-Stadtmitte.
-constexpr vision::BodyShare kFollowedShare{0.66, 0.86};
-constexpr double kAboveHead = 0.03, kBelowFeet = 0.02;
-// The scan of a look, which shows a region with a margin around it. Chosen: scales nearer to each other than a scan of the
-// whole frame affords.
-constexpr double kLookScaleStep = 1.05;
-
 enum { REQUIRE_NONE, REQUIRE_PERSON };
 
 GType require_type() {
@@ -146,10 +132,21 @@ GType require_type() {
   return type;
 }
 
+enum { DETECTOR_DAIMLER, DETECTOR_HOG };
+
+GType detector_type() {
+  static const GEnumValue kValues[] = {
+      {DETECTOR_DAIMLER, "OpenCV's Daimler detector: bodies of 24 pixels and more", "daimler"},
+      {DETECTOR_HOG, "OpenCV's default people detector: finds less that is none", "hog"},
+      {0, nullptr, nullptr}};
+  static const GType type = g_enum_register_static("CerberusPersonVerifyDetector", kValues);
+  return type;
+}
+
 struct Settings {
   double rate = 4, threshold = 0, phase = 0;
   std::string model, config, labels, mean, scale;
-  int require = REQUIRE_NONE;
+  int require = REQUIRE_NONE, detector = DETECTOR_DAIMLER;
 };
 
 const cerberus::plugin::Property<Settings> kProperties[] = {
@@ -158,14 +155,15 @@ const cerberus::plugin::Property<Settings> kProperties[] = {
     property("require", &Settings::require, require_type, "What is published"),
     property("threshold", &Settings::threshold, 0, 10,
              "Score from which on a hit is a person: lower finds more people and more things that are none; "
-             "0 = 1.9 of "
-             "the Daimler "
-             "detector, 0.4 of a model")
+             "0 = 1.9 of the Daimler detector, 0.5 of hog, 0.4 of a model")
+        .read_at_start(),
+    property("detector", &Settings::detector, detector_type,
+             "Which detector finds people where the property model names none")
         .read_at_start(),
     property(
         "model", &Settings::model,
         "File of a network that detects objects, run by OpenCV: ONNX (YOLO, SSD or NanoDet) or darknet's "
-        ".weights; empty: the Daimler detector")
+        ".weights; empty: none")
         .read_at_start(),
     property("config", &Settings::config,
              "Darknet's .cfg of a model that is .weights; empty: the one beside it, of the same name")
@@ -180,7 +178,7 @@ const cerberus::plugin::Property<Settings> kProperties[] = {
         "planes in their order (103.53,116.28,123.675); empty: 0, or what NanoDet takes")
         .read_at_start(),
     property("scale", &Settings::scale,
-             "By which the difference is then multiplied, likewise: empty: 1/255 (0.00392), 1 of YOLOX, or "
+             "By which the difference is then multiplied, likewise; empty: 1/255 (0.00392), 1 of YOLOX, or "
              "what NanoDet takes")
         .read_at_start(),
     property("phase", &Settings::phase, 0, 1,
@@ -250,26 +248,22 @@ gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
     state.live.reset();
     const Settings settings = priv.settings.snapshot();
     const bool model = !settings.model.empty();
-    state.threshold = settings.threshold > 0 ? settings.threshold
-                      : model                ? kModelThreshold
-                                             : kDaimlerThreshold;
-    state.verifier.set_margins(model ? 0 : kAboveHead, model ? 0 : kBelowFeet);
+    const auto kind = model                               ? cerberus::plugin::DetectorKind::model
+                      : settings.detector == DETECTOR_HOG ? cerberus::plugin::DetectorKind::hog
+                                                          : cerberus::plugin::DetectorKind::daimler;
+    const cerberus::plugin::DetectorUse& use = cerberus::plugin::use_of(kind);
+    state.threshold = settings.threshold > 0 ? settings.threshold : use.threshold;
+    state.verifier.set_margins(use.above_head, use.below_feet);
     state.verifier.set_fits_regions(model);
-    state.certain = std::max(model ? kModelCertain : kDaimlerCertain, state.threshold);
-    const double least = state.verifier.least_score(state.threshold);
+    state.certain = std::max(use.certain, state.threshold);
     std::string wrong;
-    auto detector =
-        model
-            ? cerberus::plugin::make_model_detector({.model = settings.model,
-                                                     .config = settings.config,
-                                                     .labels = settings.labels,
-                                                     .mean = settings.mean,
-                                                     .scale = settings.scale,
-                                                     .threshold = least},
-                                                    wrong)
-            : cerberus::plugin::make_hog_detector(
-                  cerberus::plugin::HogWeights::daimler,
-                  {.threshold = least, .scale_step = kLookScaleStep, .padding = 0, .share = kFollowedShare});
+    auto detector = cerberus::plugin::make_look_detector(kind, state.verifier.least_score(state.threshold),
+                                                         {.model = settings.model,
+                                                          .config = settings.config,
+                                                          .labels = settings.labels,
+                                                          .mean = settings.mean,
+                                                          .scale = settings.scale},
+                                                         wrong);
     if (!detector) {
       refuse_model(transform, wrong);
       return FALSE;

@@ -103,19 +103,23 @@ void expect_place(const CerberusRegion& r, double x) {
 }  // namespace
 
 GST_START_TEST(a_track_that_is_a_person_is_published_as_one_with_its_identity) {
-  Verifier verifier("");
-  const auto found = regions_after(verifier, 10, {140}, false, {person_track(7, 140)});
-  fail_unless_equals_int(found.size(), 1);
-  fail_unless(found[0].person && found[0].tracked);
-  fail_unless_equals_int(found[0].id, 7);
-  fail_unless(found[0].confidence > 0.5 && found[0].confidence <= 1);
-  expect_place(found[0], 149);
+  for (const char* detector : {"detector=daimler", "detector=hog"}) {
+    Verifier verifier(detector);
+    const auto found = regions_after(verifier, 10, {140}, false, {person_track(7, 140)});
+    fail_unless_equals_int(found.size(), 1);
+    fail_unless(found[0].person && found[0].tracked, "%s", detector);
+    fail_unless_equals_int(found[0].id, 7);
+    fail_unless(found[0].confidence > 0.5 && found[0].confidence <= 1, "%s: %f", detector,
+                found[0].confidence);
+    expect_place(found[0], 149);
+  }
 }
 GST_END_TEST
 
 GST_START_TEST(a_track_that_is_no_person_stays_unless_persons_are_required) {
-  for (const bool required : {false, true}) {
-    Verifier verifier(required ? "require=person" : "");
+  for (const char* properties : {"", "detector=hog", "require=person", "detector=hog require=person"}) {
+    const bool required = g_strstr_len(properties, -1, "require");
+    Verifier verifier(properties);
     CerberusRegion thing = region(3, 20, 100, 60, 40);
     const auto found = regions_after(verifier, 10, {}, true, {thing});
     fail_unless_equals_int(found.size(), required ? 0 : 1);

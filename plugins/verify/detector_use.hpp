@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The detectors that the element offers, and how hits of each are used for looks at parts of a frame.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "model_detector.hpp"
+#include "vision/persons/body_boxes.h"
+#include "vision/persons/person_detector.h"
+
+namespace cerberus::plugin {
+
+enum class DetectorKind { daimler, hog, model };
+
+struct DetectorUse {
+  double threshold = 0, certain = 0;  // scores: by default the least, and what counts as certain
+  vision::BodyShare followed;         // part of a window by which persons are followed
+  double enlargement = 1;             // as HogScan
+  // Shares of that part above the head and below the feet.
+  double above_head = 0, below_feet = 0;
+};
+const DetectorUse& use_of(DetectorKind kind);
+
+// least: score below which hits are of no use. model: of DetectorKind::model, with any threshold. Where the detector cannot
+// be used, returns nullptr, and in `wrong` a sentence that says why.
+std::unique_ptr<vision::PersonDetector> make_look_detector(DetectorKind kind, double least,
+                                                           ModelSettings model, std::string& wrong);
+
+}  // namespace cerberus::plugin
