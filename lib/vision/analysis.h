@@ -68,6 +68,7 @@ struct Differences {
 
 struct Foreground {
   GrayPicture mask;             // 0 or 255; none once the regions stage has taken it over, see FoundRegions
+  GrayPicture background;       // what the model had learnt before; none where the camera moves
   ForegroundMaskResult result;  // threshold and noise
   FuzzyThresholdOptions chosen_with;     // how the threshold was chosen from the histogram
   std::optional<BurntInBoxes> burnt_in;  // left out of the mask; none where it is not learnt

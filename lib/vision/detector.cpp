@@ -126,6 +126,11 @@ void Detector::find_foreground(Analysis& record, const DetectorFrame& frame) {
   out.mask = gray(luma.size());
   out.result = foreground_->update(input, out.mask->view());
   out.chosen_with = options_.foreground.threshold;
+  if (const GrayView background = foreground_->background(); !background.empty()) {
+    out.background = gray(luma.size());
+    for (int y = 0; y < luma.height; ++y)
+      std::memcpy(out.background->view().row(y), background.row(y), static_cast<std::size_t>(luma.width));
+  }
   if (!options_.burnt_in) return;
   const bool changed =
       burnt_in_.update({luma, input.current, out.result.threshold, input.motion, input.still, frame.seconds},
@@ -186,7 +191,9 @@ void Detector::track(Analysis& record, const DetectorFrame& frame, std::span<con
   const Lens lens = frame.lens(options_.field_of_view);
   std::optional<CameraOrientation> orientation;
   if (frame.look && lens.known()) orientation = {lens, frame.look->pan, frame.look->tilt};
-  const Sight sight{record.luma ? GrayView((*record.luma)->view()) : GrayView{}, record.mask()};
+  Sight sight{record.luma ? GrayView((*record.luma)->view()) : GrayView{}, record.mask()};
+  if (record.foreground && record.foreground->background)
+    sight.background = record.foreground->background->view();
   const double tilt = frame.look ? frame.look->tilt : options_.tilt;
   std::vector<Track>& out = record.tracks.write();
   for (Track track :

@@ -3,7 +3,8 @@
  * SECTION:element-motiontrack
  *
  * Gives the regions of interest a stable identity, a velocity with the camera's motion taken out, an age and a state:
- * seen, coasted (carried on without evidence) or stopped (stands where it was last seen). The regions on the frame are
+ * seen, coasted (carried on without evidence) or stopped (stands where it was last seen, and before a camera that stands
+ * that place differs from what was there before). The regions on the frame are
  * replaced by the tracked ones; the frame goes through untouched. A person who leaves the picture because the camera
  * turns keeps the identity for `away-time`: place and motion are kept by angle, from the head's pose on the frames
  * where `horizontal-fov` is known, else from the camera's own motion. One who walks out of the picture of a head that

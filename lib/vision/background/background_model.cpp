@@ -67,6 +67,7 @@ void map_bits(BitView in, const Transform& map, MutableBitView out, int width) {
 struct BackgroundModel::State {
   Size size;
   int frames = 0;
+  bool stood = false;  // the camera, in the last frame
   int standing = 0;    // frames the camera has stood while the model was not in the frame's coordinates
   double period = 0;   // seconds from frame to frame, smoothed
   Transform to_frame;  // model pixel to frame pixel
@@ -302,6 +303,7 @@ void BackgroundModel::update(const BackgroundInput& in, MutableGrayView mask) {
   State& s = *state_;
   s.prepare(mask.size());
   s.mechanisms = in.mechanisms;
+  s.stood = in.still;
   s.measure_period(in.seconds);
   const bool other_light = !in.still && s.light.is_different();
   if (other_light) s.light.adopt(s.pixels(), s.mosaic);
@@ -342,6 +344,11 @@ void BackgroundModel::update(const BackgroundInput& in, MutableGrayView mask) {
     map_bits(s.mask.view(), s.to_frame.inverse(), s.absorb.view(), s.size.width);
     unpack(s.absorb.view(), mask);
   }
+}
+
+GrayView BackgroundModel::background() const {
+  State& s = *state_;
+  return s.frames > 1 && s.stood && s.to_frame.is_identity() ? GrayView(s.light.background()) : GrayView{};
 }
 
 std::size_t BackgroundModel::bytes() const {

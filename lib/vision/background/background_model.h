@@ -45,6 +45,9 @@ class BackgroundModel {
   // mask := 0 or 255 a pixel, not closed: region finding needs the gaps between people and closes the mask itself. The
   // mask also serves as scratch memory.
   void update(const BackgroundInput& input, MutableGrayView mask);
+  // What the model showed before the last frame, under that frame's light, in the frame's pixels; empty: the camera moves.
+  // Lives until the next call.
+  GrayView background() const;
   std::size_t bytes() const;
 
  private:

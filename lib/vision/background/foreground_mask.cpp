@@ -76,6 +76,10 @@ ForegroundMaskResult ForegroundMask::update(const ForegroundMaskInput& input, Mu
   return result;
 }
 
+GrayView ForegroundMask::background() const {
+  return uses_background(state_->options) ? state_->background.background() : GrayView{};
+}
+
 std::size_t ForegroundMask::bytes() const {
   const State& s = *state_;
   return s.background.bytes() + s.now.bytes() + s.before.bytes() + s.morphology.bytes() + sizeof(State);

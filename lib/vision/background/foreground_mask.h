@@ -54,6 +54,8 @@ class ForegroundMask {
   void reset();
   // mask := 0 or 255 a pixel, not closed: RegionFinder needs the gaps between people and closes it.
   ForegroundMaskResult update(const ForegroundMaskInput& input, MutableGrayView mask);
+  // BackgroundModel::background(); empty where no model is used.
+  GrayView background() const;
   std::size_t bytes() const;
 
  private:

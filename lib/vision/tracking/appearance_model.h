@@ -33,6 +33,8 @@ struct AppearanceParameters {
 // is empty.
 struct Sight {
   GrayView luma, mask;
+  GrayView
+      background{};  // as the model had learnt it before this picture, of a camera that stands; else empty
   bool known() const { return !luma.empty() && luma.size() == mask.size(); }
 };
 

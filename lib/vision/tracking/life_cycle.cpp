@@ -42,7 +42,7 @@ void LifeCycle::leave(TrackHypothesis& t, const CameraOrientation& camera) {
 void LifeCycle::walk_out(TrackHypothesis& t, const CameraOrientation& camera) {
   const Box part = t.box();
   const double end = camera.lens.frame().width, margin = t.parameters->border * t.size();
-  const bool left = part.x < margin, right = part.right() > end - margin;
+  const bool left = part.x<margin, right = part.right()> end - margin;
   leave(t, camera);
   if (left && !right) t.x.position = std::min(t.x.position, -t.width() / 2);
   if (right && !left) t.x.position = std::max(t.x.position, end + t.width() / 2);
@@ -134,8 +134,8 @@ void LifeCycle::advance_coasted(TrackHypothesis& t) {
   if (outside(t) || t.unseen > longest) depart(t);
 }
 
-// Departs after hold-stopped; sooner from a place at the picture's edge that looks otherwise for a while and is not
-// covered: then the object has left.
+// Departs after hold-stopped; sooner from a place that looks as before the object came, or, at the picture's edge, otherwise
+// than with it, for a while, and is not covered: then the object has left.
 void LifeCycle::advance_stopped(TrackHypothesis& t) {
   fade(t, options_.hold_stopped);
   double& absent = std::get<Stopped>(t.life).absent;
@@ -173,8 +173,8 @@ void LifeCycle::depart(TrackHypothesis& t) {
 }
 
 // Has the object ceased to move, rather than left or gone behind another one? It was well seen before, slower and
-// slower until nothing moved any more, uncovered, and is not a remnant of itself; at the picture's edge its place must
-// look as before.
+// slower until nothing moved any more, uncovered, and is not a remnant of itself; its place must not look as before the
+// object came, and at the picture's edge as with it.
 bool LifeCycle::has_stopped(const TrackHypothesis& t) const {
   const Parameters& q = parameters_;
   if (t.slow < q.still || t.fit.time < q.fitted || t.travel.most < q.stop_travel || t.seen_for() < q.seen ||
@@ -184,9 +184,9 @@ bool LifeCycle::has_stopped(const TrackHypothesis& t) const {
   return !remnant && !left_place(t) && !covered(t);
 }
 
-// Is it at the picture's edge, and its place looks otherwise?
+// Does its place look as before it came, or is it at the picture's edge, and its place looks otherwise?
 bool LifeCycle::left_place(const TrackHypothesis& t) const {
-  return t.appearance.place_change >= 0 && !t.stays() && t.at_border(frame_.size);
+  return t.appearance.left || (t.appearance.place_change >= 0 && !t.stays() && t.at_border(frame_.size));
 }
 
 // Does another track, one with a region, lie in front of it?

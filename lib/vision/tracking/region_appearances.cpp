@@ -6,11 +6,14 @@
 
 namespace cerberus::vision {
 
+Box RegionAppearances::in_sight(const Box& box) const {
+  const double sx = static_cast<double>(input_.luma.width) / frame_.width;
+  const double sy = static_cast<double>(input_.luma.height) / frame_.height;
+  return {box.x * sx, box.y * sy, box.width * sx, box.height * sy};
+}
+
 AppearanceModel RegionAppearances::appearance_of(const Sight& input, const Box& box, int samples) const {
-  const double sx = static_cast<double>(input.luma.width) / frame_.width;
-  const double sy = static_cast<double>(input.luma.height) / frame_.height;
-  return vision::appearance_of(input, level_, {box.x * sx, box.y * sy, box.width * sx, box.height * sy},
-                               samples);
+  return vision::appearance_of(input, level_, in_sight(box), samples);
 }
 
 AppearanceModel RegionAppearances::place(const Box& box) const {

@@ -40,6 +40,9 @@ class RegionAppearances {
   const AppearanceModel& of(std::size_t region) const { return appearances_[region]; }
   // After the region's box has changed.
   void recompute(std::size_t region, const Box& box);
+  const Sight& sight() const { return input_; }
+  // From frame pixels to those of the sight.
+  Box in_sight(const Box& box) const;
   // Of the whole box, foreground or not.
   AppearanceModel place(const Box& box) const;
   // The input of update() is not used any more.

@@ -16,6 +16,7 @@
 #include "vision/geometry/transform.h"
 #include "vision/tracking/appearance_model.h"
 #include "vision/tracking/kalman.h"
+#include "vision/tracking/standing_place.h"
 #include "vision/tracking/track_parameters.h"
 
 namespace cerberus::vision {
@@ -119,6 +120,8 @@ struct TrackHypothesis {
     double since_contact = 1e9;  // s
     AppearanceModel place;       // of the whole box since the object stands, moving pixels or not
     double place_change = -1;    // appearance distance of the box to `place` in this frame; negative: unknown
+    StandingPlace standing;
+    bool left = false;  // its place looks as before it came, in this frame
   };
 
   const TrackParameters* parameters = &kTrackParameters;

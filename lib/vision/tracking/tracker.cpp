@@ -43,6 +43,7 @@ struct Tracker::State {
   void predict(const Transform& motion);
   void associate();
   void correct(TrackHypothesis& track);
+  void learn_standing(TrackHypothesis& track, bool fits);
   void remove_lost() {
     std::erase_if(tracks, [](const TrackHypothesis& t) { return t.is(TrackPhase::lost); });
   }
@@ -106,6 +107,13 @@ void Tracker::State::predict(const Transform& motion) {
     if (turning) place = {};  // the background around the object is another one now
     t.appearance.place_change =
         t.in_view() && place.known() ? appearance_distance(place, appearances.place(t.box())) : -1;
+    StandingPlace& standing = t.appearance.standing;
+    if (turning && appearances.sight().known())
+      standing.carry(motion.rescaled(frame, appearances.sight().luma.size()));
+    const Sight& sight = appearances.sight();
+    t.appearance.left = sight.known() && standing.known() &&
+                        (standing.holds(appearances.in_sight(t.box())) ? standing.left(sight.luma)
+                                                                       : !sight.background.empty());
   }
 }
 
@@ -135,12 +143,25 @@ void Tracker::State::correct(TrackHypothesis& t) {
   if (t.in_view()) LifeCycle::see(t);
   const bool fits = alone && t.fit.misfit == 0;
   t.learn_place(fits && t.slow > 0 ? appearances.place(t.box()) : AppearanceModel{}, seconds);
+  learn_standing(t, fits);
   t.shared.unlocated = alone || found ? 0 : t.shared.unlocated + seconds;
   t.shared.time = alone ? 0 : t.shared.time + seconds;
   if (fits && appearances.of(j).known())
     t.remember(appearances.of(j), seconds, !association.crowded(tracks, t, region.box));
   else if (!alone)
     t.touch();
+}
+
+// The background model has not absorbed an object that has only just begun to stand. fits: the region is all of it, and of
+// nothing else.
+void Tracker::State::learn_standing(TrackHypothesis& t, bool fits) {
+  const Sight& sight = appearances.sight();
+  StandingPlace& standing = t.appearance.standing;
+  const Box box = appearances.in_sight(t.box());
+  if (t.slow == 0 && !standing.holds(box)) standing.forget();
+  if (!fits || t.slow == 0 || sight.background.empty()) return;
+  if (!standing.holds(box)) standing.begin(box, sight.background);
+  standing.learn(sight.luma);
 }
 
 void Tracker::State::start_tracks() {
