@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "outputs.h"
 #include "support/bodies.h"
+#include "support/darknet.h"
 #include "support/onnx.h"
 #include "support/temporary_file.h"
+#include "support/temporary_folder.h"
 
 #include <gst/check/gsttestclock.h>
 
@@ -300,6 +304,24 @@ GST_START_TEST(of_several_outputs_of_a_model_the_list_of_boxes_is_read) {
 }
 GST_END_TEST
 
+GST_START_TEST(a_model_without_a_folder_is_found_among_the_users_data) {
+  const TemporaryFolder data;
+  const std::string models = data.path + "/cerberus/models";
+  g_mkdir_with_parents(models.c_str(), 0700);
+  const std::vector<cerberus::tests::darknet::Anchor> person{{16, 60, 9, {9}}};
+  const std::string weights = cerberus::tests::darknet::weights(64, person),
+                    cfg = cerberus::tests::darknet::cfg(64, person);
+  g_file_set_contents((models + "/body.weights").c_str(), weights.data(), static_cast<gssize>(weights.size()),
+                      nullptr);
+  g_file_set_contents((models + "/body.cfg").c_str(), cfg.data(), static_cast<gssize>(cfg.size()), nullptr);
+  // A process of its own: GLib reads the variable once.
+  const std::string line =
+      "XDG_DATA_HOME=" + data.path +
+      " gst-launch-1.0 -q fakesrc num-buffers=0 ! personverify model=body.weights ! fakesink";
+  fail_unless_equals_int(std::system(line.c_str()), 0);
+}
+GST_END_TEST
+
 GST_START_TEST(a_wrong_model_is_an_error_that_names_it) {
   namespace onnx = cerberus::tests::onnx;
   const TemporaryFile good(onnx::constant_yolo(64, {32, 32, 16, 60, 0.9f})), text("not a model"),
@@ -445,6 +467,7 @@ Suite* personverify_suite() {
   tcase_add_test(tests, a_car_of_a_network_with_boxes_end_to_end_is_no_person);
   tcase_add_test(tests, a_network_whose_boxes_are_multiplied_by_the_size_of_their_cells_runs);
   tcase_add_test(tests, of_several_outputs_of_a_model_the_list_of_boxes_is_read);
+  tcase_add_test(tests, a_model_without_a_folder_is_found_among_the_users_data);
   tcase_add_test(tests, a_wrong_model_is_an_error_that_names_it);
   tcase_add_test(tests, a_model_that_is_refused_by_a_later_picture_is_the_same_error);
   tcase_add_test(tests, a_single_time_that_is_far_off_forgets_nobody);
