@@ -52,6 +52,8 @@ class BaseDrive {
     return line.append(text::rounded(yaw_rate_, 2).string()).append("\n");
   }
   bool is_active() const { return active_; }
+  // Metres a second as ordered; 0 once it has stopped.
+  double speed() const { return active_ ? speed_ : 0; }
 
  private:
   void set(double speed, double yaw_rate, Time now) {

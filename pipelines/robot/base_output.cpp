@@ -85,7 +85,8 @@ void BaseOutput::send() {
       G_POLLABLE_OUTPUT_STREAM(input_), line.data(), line.size(), nullptr, &error);
   lags_ = false;
   if (written != static_cast<gssize>(line.size())) return kill(error ? error->message : "its pipe is full");
-  if (unread() > kMostUnread) kill("it is more than a second late");
+  if (unread() > kMostUnread) return kill("it is more than a second late");
+  if (on_speed_) on_speed_(drive_.speed());
 }
 
 bool BaseOutput::drive(double speed, double yaw_rate) {

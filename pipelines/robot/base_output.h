@@ -5,6 +5,7 @@
 
 #include <gio/gio.h>
 
+#include <functional>
 #include <string>
 
 #include "robot/backoff.h"
@@ -19,6 +20,10 @@ class BaseOutput {
   ~BaseOutput();
   BaseOutput(const BaseOutput&) = delete;
   BaseOutput& operator=(const BaseOutput&) = delete;
+
+  // Called with each line that the program is given: metres a second, forwards positive.
+  using OnSpeed = std::function<void(double speed)>;
+  void set_on_speed(OnSpeed on_speed) { on_speed_ = std::move(on_speed); }
 
   // Shares of the greatest speeds, -1 to 1; for 500 ms unless it is repeated. False: the program does not run.
   bool drive(double speed, double yaw_rate);
@@ -38,6 +43,7 @@ class BaseOutput {
   void kill(const std::string& why);
 
   BaseSettings settings_;
+  OnSpeed on_speed_;
   BaseDrive drive_;
   Backoff backoff_;
   GSubprocess* program_ = nullptr;

@@ -115,6 +115,9 @@ class Camera {
   // The line of motionjson of the newest frame, without newline.
   std::string facts() const;
 
+  // How fast the base is to drive, metres a second straight ahead: its PIR sensors pass what stands there.
+  void note_base_speed(double speed);
+
   // Orders for the head: an action signal of pantiltsink. False: there is no head, or it refuses.
   bool turn(double pan_speed, double tilt_speed);  // degrees a second, for 500 ms unless it is repeated
   bool order(const char* signal);                  // stop, home, auto

@@ -3,7 +3,10 @@
 // page changes them; and the orders for its head.
 #include "camera.h"
 
+#include <cerberus/cerberus.h>
+
 #include <cmath>
+#include <limits>
 
 #include "element_properties.h"
 #include "robot/settings_file.h"
@@ -166,6 +169,19 @@ bool Camera::emit(const char* signal) {
   gboolean done = FALSE;
   if (head_ != nullptr) g_signal_emit_by_name(head_, signal, &done);
   return done;
+}
+
+// The turn is left to a gyro or the picture, which measure it.
+void Camera::note_base_speed(double speed) {
+  g_autoptr(GstElement) fusion = state_ == State::running ? element("fusion") : nullptr;
+  if (!fusion) return;
+  CerberusBase base;
+  cerberus_base_init(&base);
+  base.yaw_rate = std::numeric_limits<double>::quiet_NaN();
+  base.speed = speed;
+  base.valid_from = gst_element_get_current_running_time(pipeline_);
+  if (GST_CLOCK_TIME_IS_VALID(base.valid_from))
+    gst_element_send_event(fusion, cerberus_event_new_base(&base));
 }
 
 bool Camera::follow(guint track) {

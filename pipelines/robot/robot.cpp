@@ -165,7 +165,11 @@ SharedSettings Robot::shared(const CameraSettings& camera) const {
 void Robot::open_base() {
 #if HAVE_PAGE
   base_.reset();
-  if (settings_.base) base_ = std::make_unique<BaseOutput>(*settings_.base);
+  if (!settings_.base) return;
+  base_ = std::make_unique<BaseOutput>(*settings_.base);
+  base_->set_on_speed([this](double speed) {
+    for (const auto& camera : cameras_) camera->note_base_speed(speed);
+  });
 #endif
 }
 

@@ -448,10 +448,12 @@ START_TEST(a_drive_of_the_base_is_repeated_and_ends_after_half_a_second) {
   ck_assert(base.line(kStart).empty());
   base.drive(.25, -10, kStart);
   ck_assert(base.line(kStart) == "drive 0.25 -10\n");
+  ck_assert_double_eq(base.speed(), .25);
   ck_assert(base.line(kStart + milliseconds(99)).empty());
   ck_assert(base.line(kStart + milliseconds(100)) == "drive 0.25 -10\n");
   ck_assert(base.line(kStart + milliseconds(500)) == "stop\n");
   ck_assert(!base.is_active() && base.line(kStart + seconds(9)).empty());
+  ck_assert_double_eq(base.speed(), 0);
   base.drive(.5, 0, kStart + seconds(10));
   base.stop(kStart + seconds(10));
   ck_assert(base.line(kStart + seconds(10)) == "stop\n");
