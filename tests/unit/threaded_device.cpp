@@ -90,6 +90,9 @@ class Slow final : public HeadDevice {
   void leave(Time) noexcept override { diary_->note("leave"); }
   void release(Time) noexcept override { diary_->note("release"); }
   void home(Time) override { diary_->note("home"); }
+  void zoom(double position, Time) override {
+    diary_->note("zoom " + std::to_string(std::lround(100 * position)));
+  }
   bool stopping() const override { return false; }
   void watch(std::vector<pollfd>&) const override {}
   Time tick(Time now) override {
@@ -188,6 +191,17 @@ START_TEST(of_the_commands_that_wait_the_stop_is_the_first_and_the_newest_move_t
   rig.diary->let_go();
   rig.settle(1s);
   assert_text(rig.diary->take(), "home");
+  rig.hold("move 30", "move at 30 hold", 1s);
+  for (const char* line : {"zoom 0.25", "stop", "zoom 0.5", "zoom 0.75", "move at 6 hold"})
+    rig.server.obey(line, 1s);
+  rig.diary->let_go();
+  rig.settle(1s);
+  assert_text(rig.diary->take(), "stop, move 6, zoom 75");
+  rig.hold("move 30", "move at 30 hold", 1s);
+  for (const char* line : {"zoom 0.25", "stop"}) rig.server.obey(line, 1s);
+  rig.diary->let_go();
+  rig.settle(1s);
+  assert_text(rig.diary->take(), "stop");
 }
 END_TEST
 

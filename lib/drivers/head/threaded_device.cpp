@@ -26,8 +26,9 @@ struct Batch {
   std::optional<motion::Limits> limits;
   int stop = 0;
   std::optional<Move> move;
+  std::optional<double> zoom;
   bool home = false, tick = false, quit = false;
-  bool any() const { return open || limits || stop != 0 || move || home || tick || quit; }
+  bool any() const { return open || limits || stop != 0 || move || zoom || home || tick || quit; }
 };
 
 // What the device said after its last call.
@@ -82,6 +83,7 @@ Report ThreadedDevice::Core::carry_out(const Batch& batch, Time at, News& came) 
   if (batch.stop == kRelease) device->release(at);
   if (batch.move) device->move(batch.move->pan, batch.move->tilt, at);
   if (batch.home) device->home(at);
+  if (batch.zoom) device->zoom(*batch.zoom, at);
   if (!said.wrong.empty()) return said;
   said.next = device->tick(at);
   said.abilities = device->abilities();
@@ -179,6 +181,7 @@ void ThreadedDevice::post_stop(int strength, Time now) noexcept {
   core_->now = now;
   core_->todo.stop = std::max(core_->todo.stop, strength);
   core_->todo.move.reset();
+  core_->todo.zoom.reset();
   core_->todo.home = false;
   core_->work.notify_one();
 }
@@ -200,6 +203,13 @@ void ThreadedDevice::home(Time now) {
   core_->now = now;
   core_->todo.home = true;
   core_->todo.move.reset();
+  core_->work.notify_one();
+}
+
+void ThreadedDevice::zoom(double position, Time now) {
+  const std::lock_guard guard(core_->lock);
+  core_->now = now;
+  core_->todo.zoom = position;
   core_->work.notify_one();
 }
 

@@ -3,7 +3,7 @@
 // waits, but open() for `patience` and the destructor for a moment. So the helper goes on answering `alive`.
 //
 // Commands do not queue up. Of those that come while the device is in a call the newest limits, the strongest stop, and the
-// newest move or home after it are carried out, in this order; a stop cancels the moves before it. A device that has been
+// newest move or home after it and the newest zoom are carried out, in this order; a stop cancels the moves and zooms before it. A device that has been
 // in its calls for kHangs is at fault, which ends when all that it was given is carried out. One that never returns keeps
 // its thread.
 #pragma once
@@ -39,6 +39,7 @@ class ThreadedDevice final : public HeadDevice {
   bool emergency() const override;
   std::optional<SpeedsLine> take_speeds(Time now) override;
   std::optional<double> take_zoom() override;
+  void zoom(double position, Time now) override;
   void home(Time now) override;
   std::optional<HomedLine> take_homed(Time now) override;
   std::string fault() const override;
