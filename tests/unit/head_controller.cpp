@@ -12,6 +12,7 @@
 #include <future>
 #include <limits>
 
+#include "support/forwarding_head.h"
 #include "support/suite.h"
 #include "support/text.h"
 
@@ -53,29 +54,28 @@ struct Record {
   std::vector<motion::SpeedMap> maps;        // of pan, as learnt
 };
 
-class RecordedHead : public drivers::Head {
+class RecordedHead : public tests::ForwardingHead {
  public:
   RecordedHead(std::shared_ptr<Record> record, bool blocks) : record_(std::move(record)), blocks_(blocks) {}
   std::string open(const HeadSetup& setup) override {
-    return record_->refusal.empty() ? head_->open(setup) : record_->refusal;
+    return record_->refusal.empty() ? ForwardingHead::open(setup) : record_->refusal;
   }
-  void close() noexcept override { head_->close(); }
   void stop(Time now) noexcept override {
     record_->stops.push_back(now);
-    head_->stop(now);
+    ForwardingHead::stop(now);
   }
   std::string command(const HeadCommand& command) override {
     if (record_->in_command) record_->in_command();
     record_->commands.push_back(command);
-    return record_->failure.empty() ? head_->command(command) : record_->failure;
+    return record_->failure.empty() ? ForwardingHead::command(command) : record_->failure;
   }
   std::string limit(Time now, const motion::Limits& limits) override {
     record_->limits.emplace_back(now, limits);
-    return head_->limit(now, limits);
+    return ForwardingHead::limit(now, limits);
   }
   std::string state(Time time, Pose& pose) override {
     if (record_->in_state) record_->in_state();
-    std::string wrong = head_->state(time, pose);
+    std::string wrong = ForwardingHead::state(time, pose);
     pose.by_speeds = record_->by_speeds;
     pose.measured = record_->measured;
     return wrong;
@@ -93,7 +93,6 @@ class RecordedHead : public drivers::Head {
  private:
   std::shared_ptr<Record> record_;
   bool blocks_;
-  std::unique_ptr<drivers::Head> head_ = drivers::make_head("simulated");
 };
 
 HeadSetup usual_setup() {

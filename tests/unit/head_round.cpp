@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "support/forwarding_head.h"
 #include "support/suite.h"
 
 using namespace cerberus;
@@ -26,29 +27,21 @@ using sensing::radians;
 namespace {
 
 constexpr vision::Size kPicture{640, 360};
-class StoppableHead : public drivers::Head {
+class StoppableHead : public tests::ForwardingHead {
  public:
   struct State {
     bool pressed = false, parted = false;
     std::string failure;  // of every command
   };
   explicit StoppableHead(std::shared_ptr<State> state) : state_(std::move(state)) {}
-  std::string open(const drivers::HeadSetup& setup) override { return head_->open(setup); }
-  void close() noexcept override { head_->close(); }
-  void stop(Time now) noexcept override { head_->stop(now); }
   std::string command(const drivers::HeadCommand& command) override {
-    return state_->failure.empty() ? head_->command(command) : state_->failure;
+    return state_->failure.empty() ? ForwardingHead::command(command) : state_->failure;
   }
-  std::string limit(Time now, const motion::Limits& limits) override { return head_->limit(now, limits); }
-  std::string state(Time time, Pose& pose) override { return head_->state(time, pose); }
   bool emergency() override { return state_->pressed; }
   bool parted() override { return std::exchange(state_->parted, false); }
-  bool simulated() const override { return true; }
-  bool blocks() const override { return false; }
 
  private:
   std::shared_ptr<State> state_;
-  std::unique_ptr<drivers::Head> head_ = drivers::make_head("simulated");
 };
 
 constexpr char kRound[] = "goes round to meet the track on the other side";

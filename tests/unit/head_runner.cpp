@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "drivers/head/head_place.h"
+#include "support/forwarding_head.h"
 #include "support/pipe.h"
 #include "support/suite.h"
 #include "support/text.h"
@@ -267,25 +268,20 @@ END_TEST
 namespace {
 
 // A scripted head that notes which commands were stops.
-class StopNoter final : public Head {
+class StopNoter final : public cerberus::tests::ForwardingHead {
  public:
-  explicit StopNoter(std::shared_ptr<std::string> notes) : notes_(std::move(notes)) {}
-  std::string open(const HeadSetup& setup) override { return head_->open(setup); }
-  void close() noexcept override { head_->close(); }
-  void stop(Time now) noexcept override { head_->stop(now); }
+  explicit StopNoter(std::shared_ptr<std::string> notes)
+      : ForwardingHead("scripted"), notes_(std::move(notes)) {}
   std::string command(const HeadCommand& command) override {
     *notes_ += command.stop ? "stop " : "command ";
-    return head_->command(command);
+    return ForwardingHead::command(command);
   }
-  std::string limit(Time now, const Limits& limits) override { return head_->limit(now, limits); }
-  std::string state(Time time, Pose& pose) override { return head_->state(time, pose); }
   void learn(const SpeedMap& pan, const SpeedMap&) override {
     *notes_ += "learn " + std::to_string(pan.points().size()) + " ";
   }
 
  private:
   std::shared_ptr<std::string> notes_;
-  std::unique_ptr<Head> head_ = make_head("scripted");
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "support/forwarding_head.h"
 #include "support/suite.h"
 
 using namespace cerberus;
@@ -24,29 +25,21 @@ namespace {
 
 constexpr vision::Size kPicture{640, 360};
 
-class RecordedHead : public drivers::Head {
+class RecordedHead : public tests::ForwardingHead {
  public:
   struct Record {
     std::vector<HeadCommand> commands;
     bool emergency = false;
   };
   explicit RecordedHead(std::shared_ptr<Record> record) : record_(std::move(record)) {}
-  std::string open(const drivers::HeadSetup& setup) override { return head_->open(setup); }
-  void close() noexcept override { head_->close(); }
-  void stop(Time now) noexcept override { head_->stop(now); }
   std::string command(const HeadCommand& command) override {
     record_->commands.push_back(command);
-    return head_->command(command);
+    return ForwardingHead::command(command);
   }
-  std::string limit(Time now, const motion::Limits& limits) override { return head_->limit(now, limits); }
-  std::string state(Time time, Pose& pose) override { return head_->state(time, pose); }
   bool emergency() override { return record_->emergency; }
-  bool simulated() const override { return true; }
-  bool blocks() const override { return false; }
 
  private:
   std::shared_ptr<Record> record_;
-  std::unique_ptr<drivers::Head> head_ = drivers::make_head("simulated");
 };
 
 struct Rig {
