@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "vision/image/luma/luma.h"
+#include "vision/persons/person_picture.h"
 
 namespace cerberus {
 
@@ -144,6 +145,32 @@ inline vision::LumaSource luma_source(const GstVideoFrame& frame) {
       source.swapped = is_swapped(format);
     }
   }
+  return source;
+}
+
+// The same with the colours, where the frame has any.
+inline vision::PictureSource picture_source(const GstVideoFrame& frame) {
+  vision::PictureSource source;
+  source.luma = luma_source(frame);
+  const GstVideoFormatInfo* format = frame.info.finfo;
+  if (GST_VIDEO_FORMAT_INFO_N_COMPONENTS(format) < 3) return source;
+  const bool rgb = GST_VIDEO_FORMAT_INFO_IS_RGB(format);
+  const auto plane = [&](guint component) {
+    vision::LumaSource found = source.luma;
+    found.rgb = false;
+    found.data = component_data(&frame, component);
+    found.width = GST_VIDEO_FRAME_COMP_WIDTH(&frame, component);
+    found.height = GST_VIDEO_FRAME_COMP_HEIGHT(&frame, component);
+    found.stride = GST_VIDEO_FRAME_COMP_STRIDE(&frame, component);
+    found.pixel_stride = GST_VIDEO_FRAME_COMP_PSTRIDE(&frame, component);
+    return found;
+  };
+  source.blue = plane(rgb ? GST_VIDEO_COMP_B : GST_VIDEO_COMP_U);
+  source.red = plane(rgb ? GST_VIDEO_COMP_R : GST_VIDEO_COMP_V);
+  source.planes = rgb ? vision::ColourPlanes::blue_red
+                  : frame.info.colorimetry.range == GST_VIDEO_COLOR_RANGE_0_255
+                      ? vision::ColourPlanes::difference_full
+                      : vision::ColourPlanes::difference_video;
   return source;
 }
 

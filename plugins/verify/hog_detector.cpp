@@ -28,8 +28,9 @@ class HogDetector : public vision::PersonDetector {
                                                        : cv::HOGDescriptor::getDefaultPeopleDetector());
   }
 
-  std::optional<std::string> detect(vision::GrayView picture, double scale,
+  std::optional<std::string> detect(const vision::PersonPicture& whole, double scale,
                                     std::vector<vision::PersonDetection>& hits) override {
+    const vision::GrayView picture = whole.luma;
     // OpenCV's Mat takes no constant data; nothing writes through this one.
     const cv::Mat given(picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.data),
                         static_cast<std::size_t>(picture.stride));

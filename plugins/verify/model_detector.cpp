@@ -60,11 +60,11 @@ class ModelDetector : public vision::PersonDetector {
   std::optional<std::string> try_out() {
     const vision::Image<std::uint8_t> nothing(input_);
     std::vector<vision::PersonDetection> none;
-    return look(nothing.view(), none);
+    return look(vision::GrayView(nothing.view()), none);
   }
 
   // What the first picture did not show is found here.
-  std::optional<std::string> detect(vision::GrayView picture, double,
+  std::optional<std::string> detect(const vision::PersonPicture& picture, double,
                                     std::vector<vision::PersonDetection>& hits) override {
     try {
       return look(picture, hits);
@@ -72,34 +72,59 @@ class ModelDetector : public vision::PersonDetector {
       return not_run(name_, e);
     }
   }
+  bool sees_colours() const override { return true; }
 
  private:
-  // framed_ as the network takes it.
+  // OpenCV's Mat takes no constant data; nothing writes through this one.
+  static cv::Mat mat_of(vision::GrayView plane) {
+    return {plane.height, plane.width, CV_8UC1, const_cast<std::uint8_t*>(plane.data),
+            static_cast<std::size_t>(plane.stride)};
+  }
+  static void fit(vision::GrayView plane, cv::Size size, cv::Mat& to) {
+    cv::resize(mat_of(plane), to, size, 0, 0, size.width < plane.width ? cv::INTER_AREA : cv::INTER_LINEAR);
+  }
+
+  // The picture in the input's upper left corner, as red, green and blue, and a border around it.
+  void frame(const vision::PersonPicture& picture, cv::Size inner) {
+    fit(picture.luma, inner, luma_);
+    const bool coloured = picture.planes != vision::ColourPlanes::none;
+    if (coloured) fit(picture.blue, inner, blue_), fit(picture.red, inner, red_);
+    const cv::Rect place({0, 0}, inner);
+    for (cv::Mat& plane : rgb_) {
+      plane.create(input_.height, input_.width, CV_8UC1);
+      plane.setTo(cv::Scalar(kBorder));
+      if (!coloured) luma_.copyTo(plane(place));
+    }
+    for (int y = 0; coloured && y < inner.height; ++y) {
+      const std::uint8_t *luma = luma_.ptr(y), *blue = blue_.ptr(y), *red = red_.ptr(y);
+      for (int x = 0; x < inner.width; ++x) {
+        const auto rgb = vision::rgb_of(luma[x], blue[x], red[x], picture.planes);
+        for (std::size_t n = 0; n < rgb.size(); ++n) rgb_[n].ptr(y)[x] = rgb[n];
+      }
+    }
+  }
+
+  // rgb_ as the network takes it.
   void fill_blob() {
     const vision::NetworkInput usual = reader_.usual_input();
     const std::array<double, 3> mean = settings_.mean.value_or(usual.mean),
                                 scale = settings_.scale.value_or(usual.scale);
-    const int sizes[] = {1, static_cast<int>(mean.size()), input_.height, input_.width};
+    const int sizes[] = {1, static_cast<int>(rgb_.size()), input_.height, input_.width};
     blob_.create(4, sizes, CV_32F);
-    for (int plane = 0; plane < sizes[1]; ++plane) {
-      const auto n = static_cast<std::size_t>(plane);
-      cv::Mat levels(input_.height, input_.width, CV_32F, blob_.ptr<float>(0, plane));
-      framed_.convertTo(levels, CV_32F, scale[n], -mean[n] * scale[n]);
+    for (std::size_t n = 0; n < rgb_.size(); ++n) {
+      cv::Mat levels(input_.height, input_.width, CV_32F, blob_.ptr<float>(0, static_cast<int>(n)));
+      rgb_[usual.blue_first ? rgb_.size() - 1 - n : n].convertTo(levels, CV_32F, scale[n],
+                                                                 -mean[n] * scale[n]);
     }
   }
 
-  std::optional<std::string> look(vision::GrayView picture, std::vector<vision::PersonDetection>& hits) {
-    // OpenCV's Mat takes no constant data; nothing writes through this one.
-    const cv::Mat given(picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.data),
-                        static_cast<std::size_t>(picture.stride));
-    const double scale = std::min(static_cast<double>(input_.width) / picture.width,
-                                  static_cast<double>(input_.height) / picture.height);
-    const cv::Size inner(std::clamp(static_cast<int>(scale * picture.width), 1, input_.width),
-                         std::clamp(static_cast<int>(scale * picture.height), 1, input_.height));
-    cv::resize(given, scaled_, inner, 0, 0, scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
-    framed_.create(input_.height, input_.width, CV_8UC1);
-    framed_.setTo(cv::Scalar(kBorder));
-    scaled_.copyTo(framed_(cv::Rect({0, 0}, inner)));
+  std::optional<std::string> look(const vision::PersonPicture& picture,
+                                  std::vector<vision::PersonDetection>& hits) {
+    const vision::Size size = picture.luma.size();
+    const double scale = std::min(static_cast<double>(input_.width) / size.width,
+                                  static_cast<double>(input_.height) / size.height);
+    frame(picture, {std::clamp(static_cast<int>(scale * size.width), 1, input_.width),
+                    std::clamp(static_cast<int>(scale * size.height), 1, input_.height)});
     fill_blob();
     net_.setInput(blob_);
     net_.forward(results_, outputs_of_net_);
@@ -125,7 +150,8 @@ class ModelDetector : public vision::PersonDetector {
   const vision::Size input_;
   const InputSettings settings_;
   const double threshold_;
-  cv::Mat scaled_, framed_, blob_;
+  cv::Mat luma_, blue_, red_, blob_;
+  std::array<cv::Mat, 3> rgb_;
   std::vector<cv::Mat> results_;
   std::vector<vision::NetworkOutput> outputs_;
 };

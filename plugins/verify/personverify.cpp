@@ -31,8 +31,8 @@
  * sit or lie, or only their upper half.
  *
  * `model` names a network instead: an ONNX file whose input has a fixed size (1 x 3 x height x width), or the weights of a
- * darknet model (`.weights`) with its configuration (`.cfg`) beside it or named by `config`. It sees the brightness only,
- * as grey. Outputs of YOLO 5 to 8, 10 and 11, YOLOX, SSD and NanoDet are read, of N boxes and C classes (also
+ * darknet model (`.weights`) with its configuration (`.cfg`) beside it or named by `config`. It sees colours, where the frames
+ * have any. Outputs of YOLO 5 to 8, 10 and 11, YOLOX, SSD and NanoDet are read, of N boxes and C classes (also
  * transposed, and without the batch):
  *
  * - YOLO 5, 6 and 7: 1 x N x (5 + C), YOLO 8 and 11: 1 x (4 + C) x N, YOLOX with or without `--decode_in_inference`;
@@ -48,10 +48,10 @@
  * depends on OpenCV: that of Debian 12 (4.6) is older than YOLO 8, whose one step that it cannot do is rewritten while the
  * file is read; a model that cannot be run is an error at the start.
  *
- * A network gets (level - mean) * scale of grey levels from 0 to 255. By default these are numbers from 0 to 1, YOLOX gets
- * 0 to 255, and NanoDet levels about the mean of the pictures that it is trained with (103.53,116.28,123.675, times
- * 0.017429,0.017507,0.017125). A network that was trained otherwise needs the properties `mean` and `scale`: one number, or
- * three for its planes in their order.
+ * A network gets (level - mean) * scale of levels from 0 to 255, red, green and blue. By default these are numbers from 0 to
+ * 1. YOLOX gets 0 to 255, and NanoDet levels about the mean of the pictures that it is trained with (103.53,116.28,123.675,
+ * times 0.017429,0.017507,0.017125), both in the order blue, green, red. A network that was trained otherwise needs the
+ * properties `mean` and `scale`: one number, or three for its planes in their order.
  *
  * No model comes with Cerberus. `pipelines/setup person` fetches yolo-fastest-1.1_body on request, 1.2 MB that find people
  * at a fifth of the cost of the detectors above: `model=yolo-fastest-1.1_body.weights`. A name without a folder is also
@@ -176,10 +176,9 @@ const cerberus::plugin::Property<Settings> kProperties[] = {
              "File with the names of the model's classes, one a line, of which one is person; empty: person "
              "is the first class")
         .read_at_start(),
-    property(
-        "mean", &Settings::mean,
-        "Grey level (0 to 255) that is subtracted before the model sees it: one number, or three for its "
-        "planes in their order (103.53,116.28,123.675); empty: 0, or what NanoDet takes")
+    property("mean", &Settings::mean,
+             "Level (0 to 255) that is subtracted before the model sees it: one number, or three for its "
+             "planes in their order (103.53,116.28,123.675); empty: 0, or what NanoDet takes")
         .read_at_start(),
     property("scale", &Settings::scale,
              "By which the difference is then multiplied, likewise; empty: 1/255 (0.00392), 1 of YOLOX, or "
@@ -201,7 +200,7 @@ struct State {  // streaming thread only
   GstVideoInfo info;
   vision::Size reduced;
   vision::LumaStretch stretch;
-  vision::LumaScaler scaler, crop_scaler;
+  vision::LumaScaler scaler;
   vision::Image<std::uint8_t> picture;
   vision::PersonVerifier verifier;
   vision::LookWorker worker;
@@ -394,7 +393,7 @@ std::optional<std::string> take_in(State& state, GstClockTime now) {
 }
 
 // The next look, where one is due, from the mapped frame.
-void look(State& state, const vision::LumaSource& source, GstClockTime now, const Settings& settings) {
+void look(State& state, const vision::PictureSource& source, GstClockTime now, const Settings& settings) {
   const auto period = static_cast<GstClockTime>(GST_SECOND / settings.rate);
   state.verifier.set_period(1 / settings.rate);
   if (!GST_CLOCK_TIME_IS_VALID(state.next_look))
@@ -406,12 +405,8 @@ void look(State& state, const vision::LumaSource& source, GstClockTime now, cons
   for (const vision::LookRegion& region : chosen->regions.chosen()) {
     GST_LOG("%" GST_TIME_FORMAT ": looks at %d,%d %dx%d, scale %.2f", GST_TIME_ARGS(now), region.x, region.y,
             region.width, region.height, region.scale);
-    vision::Image<std::uint8_t>& picture = state.worker.picture(number++);
-    picture.resize({region.width, region.height});
-    vision::LumaSource part = source;
-    part.data += region.y * part.stride + static_cast<std::ptrdiff_t>(region.x) * part.pixel_stride;
-    part.width = region.width, part.height = region.height;
-    state.crop_scaler.scale(part, picture.view());
+    state.worker.picture(number++).take(source, region.x, region.y, {region.width, region.height},
+                                        state.worker.sees_colours());
   }
   state.worker.begin(chosen->regions);
   state.pending = Pending{*chosen, now};
@@ -446,8 +441,9 @@ GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, G
     state.last = now;
 
     const vision::Size size{GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)};
-    const vision::LumaSource source = state.stretch.stretched(cerberus::luma_source(*frame.get()));
-    state.scaler.scale(source, state.picture.view());
+    vision::PictureSource source = cerberus::picture_source(*frame.get());
+    source.luma = state.stretch.stretched(source.luma);
+    state.scaler.scale(source.luma, state.picture.view());
     vision::Transform motion;
     if (const CerberusCameraMotion* camera = cerberus_buffer_peek_camera_motion(buffer))
       std::copy_n(camera->matrix, motion.m.size(), motion.m.begin());

@@ -20,6 +20,7 @@
 #include "boxes.h"
 #include "development_sequences.h"
 #include "frames.h"
+#include "shared/video.hpp"
 #include "support/data.h"
 #include "verify/hog_detector.hpp"
 #include "verify/model_detector.hpp"
@@ -126,6 +127,7 @@ class Looks {
 bool measure(const DevelopmentSequence& sequence, vision::WholeFrameDetector& detector, Looks& looks) {
   double next = 0;
   std::vector<vision::PersonDetection> bodies;
+  vision::PictureCopy picture;
   return for_each_sample(
       sequence.source +
           " ! videoconvert ! video/x-raw,format=I420 ! appsink name=out sync=false max-buffers=4",
@@ -140,9 +142,8 @@ bool measure(const DevelopmentSequence& sequence, vision::WholeFrameDetector& de
             !gst_video_frame_map(&mapped, &info, buffer, GST_MAP_READ))
           return;
         const std::clock_t start = std::clock();
-        detector.find({static_cast<const std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(&mapped, 0)), info.width,
-                       info.height, GST_VIDEO_FRAME_PLANE_STRIDE(&mapped, 0)},
-                      bodies);
+        picture.take(picture_source(mapped), 0, 0, {info.width, info.height}, detector.sees_colours());
+        detector.find(picture.view(), bodies);
         looks.add(n, bodies, double(std::clock() - start) / CLOCKS_PER_SEC);
         gst_video_frame_unmap(&mapped);
       });

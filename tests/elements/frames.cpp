@@ -90,6 +90,84 @@ START_TEST(the_brightness_of_every_format_is_found) {
 }
 END_TEST
 
+namespace {
+
+// Red in the left half, blue in the right one: Y, Cb, Cr from 16 to 235 and 240, or R, G, B.
+void fill_red_and_blue(GstVideoFrame* frame) {
+  const GstVideoFormatInfo* format = frame->info.finfo;
+  const int width = GST_VIDEO_FRAME_WIDTH(frame);
+  const bool words = GST_VIDEO_FORMAT_INFO_DEPTH(format, 0) > 8, rgb = GST_VIDEO_FORMAT_INFO_IS_RGB(format);
+  const std::uint8_t colours[2][2][3] = {{{81, 90, 240}, {41, 240, 110}}, {{255, 0, 0}, {0, 0, 255}}};
+  std::vector<std::uint8_t> line(4 * (width + 8));
+  std::vector<std::uint16_t> wide(4 * (width + 8));
+  for (int x = 0; x < width; ++x) {
+    line[4 * x] = 255, wide[4 * x] = 65535;
+    for (int c = 0; c < 3; ++c) {
+      line[4 * x + 1 + c] = colours[rgb][x >= width / 2][c];
+      wide[4 * x + 1 + c] = static_cast<std::uint16_t>(line[4 * x + 1 + c] << 8);
+    }
+  }
+  for (int y = 0; y < GST_VIDEO_FRAME_HEIGHT(frame); ++y)
+    format->pack_func(format, GST_VIDEO_PACK_FLAG_NONE,
+                      words ? static_cast<gpointer>(wide.data()) : line.data(), 0, frame->data,
+                      frame->info.stride, GST_VIDEO_CHROMA_SITE_UNKNOWN, y, width);
+}
+
+void assert_colour(const cerberus::vision::PersonPicture& picture, double across, bool red,
+                   const char* what) {
+  const auto at = [&](const cerberus::vision::GrayView& plane) {
+    return plane.at(static_cast<int>(across * plane.width), plane.height / 2);
+  };
+  const auto rgb =
+      cerberus::vision::rgb_of(at(picture.luma), at(picture.blue), at(picture.red), picture.planes);
+  fail_unless((red ? rgb[0] : rgb[2]) > 245 && rgb[1] < 10 && (red ? rgb[2] : rgb[0]) < 10,
+              "%s: %d, %d, %d at %g", what, rgb[0], rgb[1], rgb[2], across);
+}
+
+}  // namespace
+
+START_TEST(the_colours_of_every_format_are_found) {
+  const GstVideoFormat format = gst_video_format_from_string(format_name(_i));
+  GstVideoInfo info;
+  gst_video_info_set_format(&info, format, 66, 34);
+  g_autoptr(GstBuffer) buffer = gst_buffer_new_allocate(nullptr, info.size, nullptr);
+  VideoFrame writing(info, buffer, GST_MAP_READWRITE);
+  fill_red_and_blue(writing.get());
+  writing.unmap();
+  VideoFrame frame(info, buffer, GST_MAP_READ);
+  const auto source = cerberus::picture_source(*frame.get());
+  cerberus::vision::PictureCopy copy;
+  copy.take(source, 0, 0, {66, 34}, false);
+  fail_unless(copy.view().planes == cerberus::vision::ColourPlanes::none && copy.view().luma.width == 66);
+  copy.take(source, 0, 0, {66, 34}, true);
+  if (GST_VIDEO_INFO_IS_GRAY(&info)) {
+    fail_unless(copy.view().planes == cerberus::vision::ColourPlanes::none);
+    return;
+  }
+  assert_colour(copy.view(), .2, true, format_name(_i));
+  assert_colour(copy.view(), .8, false, format_name(_i));
+  copy.take(source, 40, 5, {20, 25}, true);
+  fail_unless(copy.view().luma.width == 20 && copy.view().luma.height == 25);
+  for (const double across : {0., .5, .95}) assert_colour(copy.view(), across, false, format_name(_i));
+}
+END_TEST
+
+START_TEST(the_colours_of_a_full_range_are_not_stretched) {
+  using cerberus::vision::ColourPlanes;
+  GstVideoInfo info;
+  gst_video_info_set_format(&info, GST_VIDEO_FORMAT_I420, 8, 8);
+  g_autoptr(GstBuffer) buffer = gst_buffer_new_allocate(nullptr, info.size, nullptr);
+  VideoFrame video(info, buffer, GST_MAP_READ);
+  fail_unless(cerberus::picture_source(*video.get()).planes == ColourPlanes::difference_video);
+  video.unmap();
+  info.colorimetry.range = GST_VIDEO_COLOR_RANGE_0_255;
+  VideoFrame full(info, buffer, GST_MAP_READ);
+  fail_unless(cerberus::picture_source(*full.get()).planes == ColourPlanes::difference_full);
+  const auto red = cerberus::vision::rgb_of(76, 85, 255, ColourPlanes::difference_full);
+  fail_unless(red[0] > 250 && red[1] < 4 && red[2] < 4);
+}
+END_TEST
+
 // Strides far above the width, and borders around the picture, as video memory of cameras has them.
 START_TEST(padding_around_the_picture_is_respected) {
   const GstVideoFormat format = gst_video_format_from_string(format_name(_i));
@@ -221,6 +299,8 @@ static Suite* frames_suite(void) {
   TCase* tc = tcase_create("video");
   suite_add_tcase(s, tc);
   tcase_add_loop_test(tc, the_brightness_of_every_format_is_found, 0, G_N_ELEMENTS(kFormats));
+  tcase_add_loop_test(tc, the_colours_of_every_format_are_found, 0, G_N_ELEMENTS(kFormats));
+  tcase_add_test(tc, the_colours_of_a_full_range_are_not_stretched);
   tcase_add_loop_test(tc, padding_around_the_picture_is_respected, 0, G_N_ELEMENTS(kFormats));
   tcase_add_test(tc, a_negative_stride_reads_upwards);
   tcase_add_test(tc, the_caps_name_exactly_the_supported_formats);

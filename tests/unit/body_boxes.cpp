@@ -29,7 +29,8 @@ class FakeDetector : public PersonDetector {
   std::vector<PersonDetection> hits;
   std::optional<std::string> refusal;
   double* scale = nullptr;
-  std::optional<std::string> detect(GrayView, double asked, std::vector<PersonDetection>& found) override {
+  std::optional<std::string> detect(const PersonPicture&, double asked,
+                                    std::vector<PersonDetection>& found) override {
     *scale = asked;
     found.insert(found.end(), hits.begin(), hits.end());
     return refusal;
@@ -131,7 +132,7 @@ START_TEST(a_whole_frame_is_scanned_at_its_lines_and_the_bodies_are_those_of_thi
   WholeFrameDetector detector(std::move(fake), 480, {.5, .75});
   Image<std::uint8_t> frame({1280, 960});
   std::vector<PersonDetection> bodies{{{1, 1, 1, 1}, 9}};
-  ck_assert(!detector.find(frame.view(), bodies));
+  ck_assert(!detector.find(GrayView(frame.view()), bodies));
   ck_assert_double_eq(scale, .5);
   ck_assert_uint_eq(bodies.size(), 1);
   ck_assert_double_eq(bodies[0].box.x, 117);
@@ -147,7 +148,7 @@ START_TEST(a_detector_that_cannot_be_used_says_so_through_the_whole_frame) {
   WholeFrameDetector detector(std::move(fake), 0, {});
   Image<std::uint8_t> frame({64, 48});
   std::vector<PersonDetection> bodies;
-  ck_assert(detector.find(frame.view(), bodies) == std::optional<std::string>("It is none."));
+  ck_assert(detector.find(GrayView(frame.view()), bodies) == std::optional<std::string>("It is none."));
   ck_assert_double_eq(scale, 1);
 }
 END_TEST

@@ -52,7 +52,7 @@ std::vector<PersonDetection> hits_of(const plugin::ModelSettings& settings, std:
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide; ++x) picture.view().at(x, y) = level;
   std::vector<PersonDetection> hits;
-  const auto refusal = detector->detect(picture.view(), 1, hits);
+  const auto refusal = detector->detect(GrayView(picture.view()), 1, hits);
   ck_assert_msg(!refusal, "%s", refusal.value_or("").c_str());
   return hits;
 }
@@ -84,7 +84,7 @@ START_TEST(histograms_of_gradients_find_the_bodies_of_a_whole_frame) {
     WholeFrameDetector detector(plugin::make_hog_detector(weights, {.threshold = .5, .share = {}}),
                                 plugin::kWholeFrameLines, plugin::body_share(weights));
     std::vector<PersonDetection> bodies;
-    ck_assert(!detector.find(frame.view(), bodies));
+    ck_assert(!detector.find(GrayView(frame.view()), bodies));
     ck_assert_uint_ge(bodies.size(), 2);
     expect_body(bodies[0].box, bodies[0].box.x < 160 ? left : right);
     expect_body(bodies[1].box, bodies[0].box.x < 160 ? right : left);
@@ -98,7 +98,7 @@ START_TEST(a_picture_smaller_than_the_window_has_no_hits) {
     for (const double scale : {.01, .2, 1., 3.}) {
       std::vector<PersonDetection> hits;
       ck_assert(!plugin::make_hog_detector(weights, {.threshold = 9, .share = {}})
-                     ->detect(picture.view(), scale, hits));
+                     ->detect(GrayView(picture.view()), scale, hits));
       ck_assert(hits.empty());
     }
 }
@@ -183,6 +183,33 @@ START_TEST(mean_and_scale_replace_what_the_layout_says_of_the_input) {
 }
 END_TEST
 
+// Whatever is in the picture, only the first plane counts: .5, and a thousandth of its level.
+START_TEST(colours_reach_the_planes_of_the_network_in_their_order) {
+  const Files files;
+  constexpr float kLight = .001f / (8 * 8);
+  auto settings =
+      settings_of(files.write("net.onnx", tests::onnx::constant_yolo(kSide, {32, 32, 16, 60, .5f}, kLight)));
+  const auto plane = [](int width, int height, std::uint8_t level) {
+    Image<std::uint8_t> image({width, height});
+    tests::fill(image.view(), 0, 0, width, height, level);
+    return image;
+  };
+  const auto luma = plane(128, 128, 81), blue = plane(64, 64, 90), red = plane(64, 64, 240);
+  PersonPicture picture{GrayView(luma.view())};
+  picture.blue = blue.view(), picture.red = red.view(), picture.planes = ColourPlanes::difference_video;
+  const auto score = [&](const char* scale) {
+    settings.scale = scale;
+    std::string wrong;
+    std::vector<PersonDetection> hits;
+    ck_assert(!plugin::make_model_detector(settings, wrong)->detect(picture, 1, hits));
+    return hits.at(0).score;
+  };
+  ck_assert_double_eq_tol(score("1,0,0"), .5 + .001 * 255, .002);
+  ck_assert_double_eq_tol(score("0,1,0"), .5, .002);
+  ck_assert_double_eq_tol(score("0,0,1"), .5, .002);
+}
+END_TEST
+
 // Of the four cells of 32 pixels the last one is a person's.
 START_TEST(nanodet_is_read_from_an_onnx_file) {
   const Files files;
@@ -226,6 +253,7 @@ int main() {
        a_picture_smaller_than_the_window_has_no_hits,
        darknet_weights_are_read_with_the_configuration_beside_them, the_configuration_may_be_named,
        darknet_boxes_are_found_down_to_the_threshold, files_of_darknet_that_do_not_fit_are_refused_by_name,
-       mean_and_scale_replace_what_the_layout_says_of_the_input, nanodet_is_read_from_an_onnx_file,
+       mean_and_scale_replace_what_the_layout_says_of_the_input,
+       colours_reach_the_planes_of_the_network_in_their_order, nanodet_is_read_from_an_onnx_file,
        published_networks_can_be_used});
 }

@@ -452,11 +452,11 @@ namespace {
 
 class Scripted : public PersonDetector {
  public:
-  std::optional<std::string> detect(GrayView picture, double scale,
+  std::optional<std::string> detect(const PersonPicture& picture, double scale,
                                     std::vector<PersonDetection>& hits) override {
     if (scale > 9) throw std::runtime_error("too large");
     if (scale > 8) return "The scale is refused.";
-    hits.push_back({{0, 0, double(picture.width), double(picture.height)}, scale});
+    hits.push_back({{0, 0, double(picture.luma.width), double(picture.luma.height)}, scale});
     return std::nullopt;
   }
 };
@@ -464,11 +464,14 @@ class Scripted : public PersonDetector {
 }  // namespace
 
 START_TEST(the_worker_returns_what_its_detector_found_refused_or_threw) {
+  const std::vector<std::uint8_t> pixels(30 * 60);
   LookWorker worker;
   worker.start(std::make_unique<Scripted>());
   for (const double scale : {2.0, 3.0}) {
-    worker.picture(0).resize({30, 60});
-    worker.picture(1).resize({10, 20});
+    worker.picture(0).take({.luma = {.data = pixels.data(), .width = 30, .height = 60, .stride = 30}}, 0, 0,
+                           {30, 60}, false);
+    worker.picture(1).take({.luma = {.data = pixels.data(), .width = 10, .height = 20, .stride = 10}}, 0, 0,
+                           {10, 20}, false);
     worker.begin({{{{7, 5, 30, 60, scale}, {100, 90, 10, 20, 1}}}, 2});
     const auto& hits = worker.wait();
     ck_assert_uint_eq(hits.size(), 2);

@@ -29,7 +29,7 @@ struct NanodetLayout {
   int person = 0;  // column of the scores
 };
 
-// What NanoDet takes: (grey level - mean) * scale, planes in the order blue, green, red.
+// What NanoDet takes: (level - mean) * scale, planes in the order blue, green, red.
 inline constexpr std::array<double, 3> kNanodetMean{103.53, 116.28, 123.675};
 inline constexpr std::array<double, 3> kNanodetScale{1 / 57.375, 1 / 57.12, 1 / 58.395};
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How grey levels become the numbers that a network takes.
+// How levels of colours become the numbers that a network takes.
 #pragma once
 
 #include <array>
@@ -8,10 +8,11 @@
 
 namespace cerberus::vision {
 
-// (grey level - mean) * scale, for each of the network's planes in its order.
+// (level - mean) * scale, for each of the network's planes in its order.
 struct NetworkInput {
   std::array<double, 3> mean{};
   std::array<double, 3> scale{1 / 255.0, 1 / 255.0, 1 / 255.0};
+  bool blue_first = false;  // its planes are blue, green, red, else red, green, blue
 };
 
 // "0.5" or "103.5,116.3,123.7": one number for all planes, or one for each, with a point in every locale. nullopt: the

@@ -122,8 +122,8 @@ void NetworkReader::decide_darknet(std::span<const NetworkOutput> outputs, std::
 }
 
 NetworkInput NetworkReader::usual_input() const {
-  if (nanodet_) return {kNanodetMean, kNanodetScale};
-  if (!layouts_.empty() && layouts_.front().takes_bytes) return {.scale = {1, 1, 1}};
+  if (nanodet_) return {kNanodetMean, kNanodetScale, true};
+  if (!layouts_.empty() && layouts_.front().takes_bytes) return {.scale = {1, 1, 1}, .blue_first = true};
   return {};
 }
 

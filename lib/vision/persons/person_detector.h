@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "vision/geometry/box.h"
-#include "vision/image/image.h"
+#include "vision/persons/person_picture.h"
 
 namespace cerberus::vision {
 
@@ -22,8 +22,10 @@ class PersonDetector {
   // Appends every hit in `picture`, several for one person; the order is of no account. scale: by which a detector with a
   // window of fixed size enlarges the picture; a network fits the picture to its input instead. Where the detector
   // turns out to be none that can be used, returns a sentence that says why. Throws std::exception.
-  virtual std::optional<std::string> detect(GrayView picture, double scale,
+  virtual std::optional<std::string> detect(const PersonPicture& picture, double scale,
                                             std::vector<PersonDetection>& hits) = 0;
+  // Whether it makes use of colours.
+  virtual bool sees_colours() const { return false; }
 };
 
 }  // namespace cerberus::vision

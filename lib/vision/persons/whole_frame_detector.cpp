@@ -3,9 +3,10 @@
 
 namespace cerberus::vision {
 
-std::optional<std::string> WholeFrameDetector::find(GrayView frame, std::vector<PersonDetection>& bodies) {
+std::optional<std::string> WholeFrameDetector::find(const PersonPicture& frame,
+                                                    std::vector<PersonDetection>& bodies) {
   bodies.clear();
-  const double scale = lines_ > 0 ? static_cast<double>(lines_) / frame.height : 1;
+  const double scale = lines_ > 0 ? static_cast<double>(lines_) / frame.luma.height : 1;
   auto refusal = detector_->detect(frame, scale, bodies);
   hits_to_bodies(bodies, share_);
   return refusal;

@@ -22,7 +22,8 @@ class WholeFrameDetector {
 
   // Replaces `bodies` by one box for each person found, in pixels of the frame, surest first. Returns nullopt, or why the
   // detector cannot be used (PersonDetector::detect). Throws std::exception.
-  std::optional<std::string> find(GrayView frame, std::vector<PersonDetection>& bodies);
+  std::optional<std::string> find(const PersonPicture& frame, std::vector<PersonDetection>& bodies);
+  bool sees_colours() const { return detector_->sees_colours(); }
 
  private:
   std::unique_ptr<PersonDetector> detector_;

@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
-#include "vision/verification/look_schedule.h"
 #include "vision/persons/person_detector.h"
+#include "vision/verification/look_schedule.h"
 
 namespace cerberus::vision {
 
@@ -29,10 +29,12 @@ class LookWorker {
   // Returns when a look in progress has ended; its result is dropped.
   void stop();
   bool is_running() const { return thread_.joinable(); }
+  // While it runs.
+  bool sees_colours() const { return detector_->sees_colours(); }
 
   // The memory of the next look's picture of this number, below LookRegions::kMost: filled by the caller while no look is
   // in progress, with what the region shows.
-  Image<std::uint8_t>& picture(std::size_t number) { return pictures_[number]; }
+  PictureCopy& picture(std::size_t number) { return pictures_[number]; }
   // Begins a look at these pictures. Call it only when none is in progress.
   void begin(const LookRegions& regions);
   // Whether the result of the last look is there.
@@ -48,7 +50,7 @@ class LookWorker {
   void run();
 
   std::unique_ptr<PersonDetector> detector_;
-  std::array<Image<std::uint8_t>, LookRegions::kMost> pictures_;
+  std::array<PictureCopy, LookRegions::kMost> pictures_;
   LookRegions regions_;
   std::vector<PersonDetection> hits_;
   std::optional<std::string> refusal_;
