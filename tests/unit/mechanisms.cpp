@@ -24,9 +24,9 @@ std::string values_of(DetectorSettings settings) {
   const cerberus::vision::ForegroundMechanisms& m = settings.numbers.mechanisms;
   const auto* c = &m.components;
   for (const bool on :
-       {m.light, m.alignment, m.mosaic, m.motion_blur, m.candidate_background, c->was_empty, c->sides_go_on,
-        c->origins, c->find_ghosts, c->resolve_origins, c->resting_ghosts, c->merge_neighbours,
-        settings.camera_motion, settings.options.burnt_in, settings.options.regions.people,
+       {m.light, m.alignment, m.mosaic, m.motion_blur, c->was_empty, c->sides_go_on, c->origins,
+        c->find_ghosts, c->resolve_origins, c->resting_ghosts, c->merge_neighbours, settings.camera_motion,
+        settings.options.burnt_in, settings.options.regions.people,
         settings.options.foreground.background_model, settings.options.foreground.noise_floor})
     all += on ? '1' : '0';
   return all;

@@ -22,14 +22,14 @@ constexpr Rect kPlace{60, 30, 20, 60};
 
 struct Scene {
   Image<std::uint8_t> frame{kSize}, background{kSize}, quiet{kSize};
-  BitMask mask, absorb, lasting;
+  BitMask mask, absorb;
   Labeller labeller;
   RestingGhosts ghosts;
 
   Scene() {
     for (auto* picture : {&frame, &background}) picture->fill_bytes(100);
     quiet.fill_bytes(200);
-    for (auto* bits : {&mask, &absorb, &lasting}) bits->resize(bit_mask_size(kSize));
+    for (auto* bits : {&mask, &absorb}) bits->resize(bit_mask_size(kSize));
     labeller.preallocate(kSize);
     ghosts.preallocate(kSize);
   }
@@ -41,12 +41,9 @@ struct Scene {
     for (int y = r.y; y < r.y + r.height; ++y) set_bits(mask.view().row(y), r.x, r.x + r.width);
     paint(quiet, r, since);
   }
-  void lasts(const Rect& r) {
-    for (int y = r.y; y < r.y + r.height; ++y) set_bits(lasting.view().row(y), r.x, r.x + r.width);
-  }
   void remove() {
-    ghosts.remove({frame.view(), background.view(), quiet.view(), {}, {{}, kSize.width}, lasting.view()},
-                  kRested, labeller, mask.view(), absorb.view());
+    ghosts.remove({frame.view(), background.view(), quiet.view(), {}, {{}, kSize.width}}, kRested, labeller,
+                  mask.view(), absorb.view());
   }
 };
 
@@ -114,36 +111,6 @@ START_TEST(nothing_is_judged_before_it_has_rested_or_where_its_outline_is_hidden
 }
 END_TEST
 
-// It moved in this frame, as somebody has just passed, and others hide its outline but for a fifth or a tenth of its height.
-START_TEST(a_ghost_whose_place_has_long_been_the_same_need_not_rest_now) {
-  struct Case {
-    int free;  // rows
-    bool lasting, taken;
-  };
-  for (const Case& c : {Case{12, true, true}, {12, false, false}, {6, true, false}}) {
-    Scene s;
-    Scene::paint(s.background, kPlace, 200);
-    s.differs({40, 30, 20, kPlace.height - c.free}, 0);
-    s.differs({80, 30, 20, kPlace.height - c.free}, 0);
-    s.differs(kPlace, 0);
-    if (c.lasting) s.lasts(kPlace);
-    s.remove();
-    ck_assert_int_eq(count(s.mask, kPlace), c.taken ? 0 : all(kPlace));
-    ck_assert_int_eq(count(s.absorb, kPlace), c.taken ? all(kPlace) : 0);
-  }
-}
-END_TEST
-
-START_TEST(who_has_long_stood_there_stays) {
-  Scene s;
-  Scene::paint(s.frame, kPlace, 200);
-  s.differs(kPlace, 0);
-  s.lasts(kPlace);
-  s.remove();
-  ck_assert_int_eq(count(s.mask, kPlace), all(kPlace));
-}
-END_TEST
-
 // Beside the place ends what the frame covers, or what the model has learnt.
 START_TEST(where_nothing_can_be_compared_is_no_outline) {
   struct Case {
@@ -181,6 +148,6 @@ int main() {
       "resting_ghosts",
       {a_ghost_that_people_pass_is_taken_and_they_stay, who_has_stopped_stays,
        nothing_is_judged_before_it_has_rested_or_where_its_outline_is_hidden_or_short,
-       a_ghost_whose_place_has_long_been_the_same_need_not_rest_now, who_has_long_stood_there_stays,
+
        an_outline_that_is_an_edge_of_both_decides_nothing, where_nothing_can_be_compared_is_no_outline});
 }

@@ -189,7 +189,6 @@ void BackgroundModel::State::resample() {
     plane->swap(frame);
   }
   mosaic.restore(pixels(), to_frame);
-  classification.forget_candidates();
   to_frame = {};
   standing = 0;
 }

@@ -87,13 +87,11 @@ double frame_sigma(double difference_sigma) {
 void ForegroundClassification::preallocate(Size picture) {
   tolerance_.resize({picture.width, 1});
   for (auto* bits : {&weak_, &strong_}) bits->resize(bit_mask_size(picture));
-  candidates_.preallocate(picture);
   components_.preallocate(picture);
   blur_.preallocate(picture);
 }
 
 void ForegroundClassification::reset() {
-  candidates_.reset();
   components_.reset();
 }
 
@@ -217,14 +215,10 @@ void ForegroundClassification::decide(const ClassificationInput& in, MutableBitV
   morphology_.vote(seeds, width, p.neighbours);
   morphology_.reconstruct(seeds, weak_.view());
   std::memcpy(weak_.view().data, seeds.data, weak_.bytes());
-  if (in.still && in.mechanisms.candidate_background)
-    candidates_.update({in.frame, seeds, in.model.age, in.model.quiet}, noise_);
-  else
-    candidates_.reset();
   ComponentInput planes{in.frame,     in.background,
                         in.model.age, in.model.quiet,
                         in.still,     !in.still && unreliable_ < p.most_unreliable * in.columns * in.rows,
-                        in.spans,     candidates_.lasting()};
+                        in.spans};
   planes.mechanisms = in.mechanisms.components;
   const bool young = components_.classify(planes, windows_, seeds, absorb);
   const int side = std::max(3, p.closing * width / 320 | 1);
@@ -238,8 +232,8 @@ void ForegroundClassification::decide(const ClassificationInput& in, MutableBitV
 }
 
 std::size_t ForegroundClassification::bytes() const {
-  return tolerance_.bytes() + weak_.bytes() + strong_.bytes() + morphology_.bytes() + candidates_.bytes() +
-         components_.bytes() + blur_.bytes();
+  return tolerance_.bytes() + weak_.bytes() + strong_.bytes() + morphology_.bytes() + components_.bytes() +
+         blur_.bytes();
 }
 
 }  // namespace cerberus::vision

@@ -9,7 +9,6 @@
 #include <span>
 
 #include "vision/background/background_kernels.h"
-#include "vision/background/candidate_background.h"
 #include "vision/background/mechanisms.h"
 #include "vision/background/mosaic.h"
 #include "vision/background/motion_blur.h"
@@ -52,13 +51,7 @@ class ForegroundClassification {
   // The model starts anew.
   void reset();
   // seconds: from frame to frame, > 0.
-  void set_period(double seconds) {
-    windows_ = FrameWindows::of(seconds);
-    candidates_.set_period(seconds);
-  }
-
-  // The model's pixels have moved while the camera stands.
-  void forget_candidates() { candidates_.reset(); }
+  void set_period(double seconds) { windows_ = FrameWindows::of(seconds); }
 
   // mask in: D(k) > Th; out: the foreground, not closed. absorb := pixels that the model shall take over at once.
   // Counts model.quiet up, and limits model.age where the frame does not fit the model.
@@ -83,7 +76,6 @@ class ForegroundClassification {
   Image<std::uint8_t> tolerance_;  // registration error in 1/16 pixel, one row of blocks, per pixel
   BitMask weak_, strong_;          // hysteresis: components of `weak` that contain a pixel of `strong` stay
   Morphology morphology_;
-  CandidateBackground candidates_;
   ForegroundComponents components_;
   MotionBlur blur_;
   int unreliable_ = 0;  // blocks of this frame that the model does not fit

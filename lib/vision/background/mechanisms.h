@@ -8,11 +8,10 @@
 namespace cerberus::vision {
 
 struct ForegroundMechanisms {
-  bool light = true;                 // background_light.h
-  bool alignment = true;             // alignment.h
-  bool mosaic = true;                // mosaic.h
-  bool motion_blur = true;           // motion_blur.h
-  bool candidate_background = true;  // candidate_background.h
+  bool light = true;        // background_light.h
+  bool alignment = true;    // alignment.h
+  bool mosaic = true;       // mosaic.h
+  bool motion_blur = true;  // motion_blur.h
   ComponentMechanisms components;
 };
 

@@ -252,9 +252,9 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
   }
   // Not only where the picture is aligned: the contrasts that a ghost's outline must have are strict enough.
   if (input.mechanisms.resting_ghosts)
-    resting_ghosts_.remove({input.frame, input.background, input.quiet, input.still ? GrayView{} : input.age,
-                            input.columns(), input.lasting},
-                           windows.recent, labeller_, mask, absorb);
+    resting_ghosts_.remove(
+        {input.frame, input.background, input.quiet, input.still ? GrayView{} : input.age, input.columns()},
+        windows.recent, labeller_, mask, absorb);
   origins_.forget(absorb);
   if (input.still) moved_ = 0;
   return young_objects;

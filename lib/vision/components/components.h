@@ -52,8 +52,6 @@ struct ComponentInput {
   bool registered = false;     // it moves, and the model fits the frame nearly everywhere
   // The columns that the frame covers, per row; empty: all.
   std::span<const RowSpan> visible{};
-  // Foreground that has shown the same for long in all, between those who pass; empty: not known.
-  BitView lasting{};
   ComponentMechanisms mechanisms{};
 
   // Edges of the scene lie at the same pixels of the frame and of the background.

@@ -12,12 +12,10 @@ namespace cerberus::vision {
 namespace {
 
 // Guard of all: unit-resting_ghosts, MOTA on TUD-Stadtmitte (bench-quality), where two people who stood at the start
-// leave ghosts: -.03 without this and without candidates; its recall before a camera that moves (bench-moving_people): .16 without.
+// leave ghosts: -.03 without this; its recall before a camera that moves (bench-moving_people): .16 without.
 constexpr struct Parameters {
   double least_area = 1 / 640.0;  // of the picture: what is smaller has too short an outline
   double least_seen = 0.25;  // of the outline that borders on the background; whoever passes hides the rest
-  // The same share, for places that `lasting` marks. swept: docs/quality.md, .1 to .25.
-  double lasting_least_seen = 0.15;
   // As components.cpp: the outline is certainly the background's.
   double contrast_ratio = 2, contrast_margin = 4;
 } kParameters;
@@ -43,14 +41,6 @@ void RestingGhosts::remove(const Pictures& pictures, int rested, Labeller& label
                            MutableBitView absorb) {
   binarise(pictures.quiet, rested - 1, places_.view());
   intersect(places_.view(), mask, places_.view());
-  remove_ghosts(pictures, kParameters.least_seen, labeller, mask, absorb);
-  if (pictures.lasting.empty()) return;
-  intersect(pictures.lasting, mask, places_.view());
-  remove_ghosts(pictures, kParameters.lasting_least_seen, labeller, mask, absorb);
-}
-
-void RestingGhosts::remove_ghosts(const Pictures& pictures, double least_seen, Labeller& labeller,
-                                  MutableBitView mask, MutableBitView absorb) {
   const Parameters& p = kParameters;
   const GrayView &f = pictures.frame, &b = pictures.background;
   const auto least = static_cast<std::uint32_t>(p.least_area * f.size().area());
@@ -76,7 +66,7 @@ void RestingGhosts::remove_ghosts(const Pictures& pictures, double least_seen, L
   }
   for (const Run& r : labeller.runs()) {
     const Outline& outline = outlines[r.component];
-    if (outline.seen < least_seen * outline.pixels ||
+    if (outline.seen < p.least_seen * outline.pixels ||
         outline.background <= p.contrast_ratio * outline.frame + p.contrast_margin * outline.seen)
       continue;
     clear_bits(mask.row(r.row), r.first, r.end);

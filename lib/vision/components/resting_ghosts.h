@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Ghosts that people pass. The place of somebody who stood there when the scene began stays foreground after he has left,
 // and while others walk past it both are one component, which moves. What rests within the foreground is therefore judged
-// by itself: where it borders on the background, the edge of a ghost is in the background model and not in the frame. So is
-// what has shown the same between those who pass (background/candidate_background.h), whether it rests now or not.
+// by itself: where it borders on the background, the edge of a ghost is in the background model and not in the frame.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +20,6 @@ class RestingGhosts {
     GrayView quiet;              // frames since a pixel moved
     GrayView age;                // frames for which the model has learnt a pixel; empty: it has learnt all
     VisibleColumns visible;
-    // Foreground that has shown the same for long in all, between those who pass; empty: not known.
-    BitView lasting{};
   };
 
   void preallocate(Size picture) { places_.resize(bit_mask_size(picture)); }
@@ -33,9 +30,6 @@ class RestingGhosts {
   std::size_t bytes() const { return places_.bytes(); }
 
  private:
-  void remove_ghosts(const Pictures& pictures, double least_seen, Labeller& labeller, MutableBitView mask,
-                     MutableBitView absorb);
-
   BitMask places_;  // where a ghost may be
 };
 
