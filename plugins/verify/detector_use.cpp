@@ -18,15 +18,20 @@ constexpr DetectorUse kDaimler{
 // none. The part is as much larger than the body as Daimler's, and the enlargement is the ratio of the bodies' heights.
 constexpr DetectorUse kHog{.threshold = 0.5,
                            .certain = 2,
+                           .least = -0.2,
                            .followed = {0.61, 0.8},
                            .enlargement = 1.24,
                            .above_head = 0.03,
                            .below_feet = 0.02};
-constexpr DetectorUse kModel{.threshold = 0.4, .certain = 1, .followed = {}};  // probabilities
+constexpr DetectorUse kModel{.threshold = 0.4, .certain = 1, .least = 0.1, .followed = {}};  // probabilities
 
 // The scan of a look, which shows a region with a margin around it. Chosen: scales nearer to each other than a scan of the
 // whole frame affords.
 constexpr double kLookScaleStep = 1.05;
+
+HogWeights weights_of(DetectorKind kind) {
+  return kind == DetectorKind::hog ? HogWeights::inria : HogWeights::daimler;
+}
 
 }  // namespace
 
@@ -41,12 +46,25 @@ std::unique_ptr<vision::PersonDetector> make_look_detector(DetectorKind kind, do
     return make_model_detector(model, wrong);
   }
   const DetectorUse& use = use_of(kind);
-  return make_hog_detector(kind == DetectorKind::hog ? HogWeights::inria : HogWeights::daimler,
-                           {.threshold = least,
-                            .scale_step = kLookScaleStep,
-                            .padding = 0,
-                            .enlargement = use.enlargement,
-                            .share = use.followed});
+  return make_hog_detector(weights_of(kind), {.threshold = least,
+                                              .scale_step = kLookScaleStep,
+                                              .padding = 0,
+                                              .enlargement = use.enlargement,
+                                              .share = use.followed});
+}
+
+std::unique_ptr<vision::WholeFrameDetector> make_whole_frame_detector(DetectorKind kind, ModelSettings model,
+                                                                      std::string& wrong, int lines) {
+  const double least = use_of(kind).least;
+  if (kind == DetectorKind::model) {
+    model.threshold = least;
+    auto detector = make_model_detector(model, wrong);
+    if (!detector) return nullptr;
+    return std::make_unique<vision::WholeFrameDetector>(std::move(detector), 0, vision::BodyShare{});
+  }
+  const HogWeights weights = weights_of(kind);
+  return std::make_unique<vision::WholeFrameDetector>(make_hog_detector(weights, {.threshold = least}), lines,
+                                                      body_share(weights));
 }
 
 }  // namespace cerberus::plugin

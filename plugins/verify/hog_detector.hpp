@@ -29,14 +29,10 @@ struct HogScan {
 
 std::unique_ptr<vision::PersonDetector> make_hog_detector(HogWeights weights, const HogScan& scan);
 
-// Of a window. Geometry of the training windows; measured alike on all sequences (the default detector's bodies: .73 to .79
+// Of a window: bodies of 79 (Daimler) and 97 lines fill the window of the smallest scale. Geometry of the training windows; measured alike on all sequences (the default detector's bodies: .73 to .79
 // high).
 constexpr vision::BodyShare body_share(HogWeights weights) {
   return weights == HogWeights::daimler ? vision::BodyShare{0.52, 0.82} : vision::BodyShare{0.48, 0.76};
 }
-
-// Lines of a whole frame that is scanned: bodies from 79 (Daimler) or 97 lines on are found, a fifth of the frame. Chosen:
-// 85 to 146 ms a look; 720 lines take a core at 4 looks a second.
-constexpr int kWholeFrameLines = 480;
 
 }  // namespace cerberus::plugin

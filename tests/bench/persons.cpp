@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // People detectors by themselves, without tracks: looks at whole frames of the development sequences, 4 a second.
 //
-//   bench-persons [--only NAME,NAME] DETECTOR...      daimler, hog, or the file of a network
+//   bench-persons [--only NAME,NAME] DETECTOR...      daimler, hog, hog:LINES, or the file of a network
 //
 // all, one: average precision (all only) and recall at IoU .5 of all boxes down to the least score, the medians of their
 // widths and heights over the truth's. nobody: the best score. Everywhere: boxes a look that are no labelled person, and
@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <memory>
 #include <sstream>
@@ -22,8 +23,7 @@
 #include "frames.h"
 #include "shared/video.hpp"
 #include "support/data.h"
-#include "verify/hog_detector.hpp"
-#include "verify/model_detector.hpp"
+#include "verify/detector_use.hpp"
 #include "vision/persons/whole_frame_detector.h"
 
 using namespace cerberus;
@@ -31,30 +31,27 @@ using namespace cerberus::bench;
 
 namespace {
 
-constexpr double kRight = .5;             // intersection over union
-constexpr double kLooksASecond = 4;       // of media time
-constexpr double kLeastProbability = .1;  // of a network
-// Scores of the SVMs down to which hits were of use to a tracker.
-constexpr double kLeastDaimler = 0, kLeastHog = -.2;
+constexpr double kRight = .5;        // intersection over union
+constexpr double kLooksASecond = 4;  // of media time
 
+// name: daimler or hog, perhaps with lines (hog:720), or a file.
 std::unique_ptr<vision::WholeFrameDetector> detector_of(const std::string& name) {
-  std::unique_ptr<vision::PersonDetector> detector;
-  if (name == "daimler" || name == "hog") {
-    const bool daimler = name == "daimler";
-    const auto weights = daimler ? plugin::HogWeights::daimler : plugin::HogWeights::inria;
-    return std::make_unique<vision::WholeFrameDetector>(
-        plugin::make_hog_detector(weights, {.threshold = daimler ? kLeastDaimler : kLeastHog}),
-        plugin::kWholeFrameLines, plugin::body_share(weights));
-  }
+  const std::size_t colon = name.find(':');
+  const std::string kind = name.substr(0, colon);
+  plugin::ModelSettings model;
   std::string wrong;
-  detector = plugin::make_model_detector(
-      {.model = name, .config = {}, .labels = {}, .mean = {}, .scale = {}, .threshold = kLeastProbability},
-      wrong);
-  if (!detector) {
-    std::fprintf(stderr, "bench-persons: %s\n", wrong.c_str());
-    return nullptr;
+  std::unique_ptr<vision::WholeFrameDetector> detector;
+  if (kind == "daimler" || kind == "hog") {
+    const int lines =
+        colon == std::string::npos ? plugin::kWholeFrameLines : std::atoi(name.c_str() + colon + 1);
+    detector = plugin::make_whole_frame_detector(
+        kind == "hog" ? plugin::DetectorKind::hog : plugin::DetectorKind::daimler, model, wrong, lines);
+  } else {
+    model.model = name;
+    detector = plugin::make_whole_frame_detector(plugin::DetectorKind::model, model, wrong);
   }
-  return std::make_unique<vision::WholeFrameDetector>(std::move(detector), 0, vision::BodyShare{});
+  if (!detector) std::fprintf(stderr, "bench-persons: %s\n", wrong.c_str());
+  return detector;
 }
 
 // What the looks at one sequence found.

@@ -13,6 +13,7 @@
 #include "support/onnx.h"
 #include "support/suite.h"
 #include "support/temporary_folder.h"
+#include "verify/detector_use.hpp"
 #include "verify/hog_detector.hpp"
 #include "verify/model_detector.hpp"
 #include "vision/persons/whole_frame_detector.h"
@@ -80,11 +81,11 @@ START_TEST(histograms_of_gradients_find_the_bodies_of_a_whole_frame) {
   tests::fill(frame.view(), 0, 0, kFrame.width, kFrame.height, 170);
   const Box left = tests::draw_person(frame.view(), 70, 80, 110, 60),
             right = tests::draw_person(frame.view(), 210, 110, 80, 60);
-  for (const auto weights : {plugin::HogWeights::daimler, plugin::HogWeights::inria}) {
-    WholeFrameDetector detector(plugin::make_hog_detector(weights, {.threshold = .5, .share = {}}),
-                                plugin::kWholeFrameLines, plugin::body_share(weights));
+  for (const auto kind : {plugin::DetectorKind::daimler, plugin::DetectorKind::hog}) {
+    std::string wrong;
+    const auto detector = plugin::make_whole_frame_detector(kind, {}, wrong);
     std::vector<PersonDetection> bodies;
-    ck_assert(!detector.find(GrayView(frame.view()), bodies));
+    ck_assert(!detector->find(GrayView(frame.view()), bodies));
     ck_assert_uint_ge(bodies.size(), 2);
     expect_body(bodies[0].box, bodies[0].box.x < 160 ? left : right);
     expect_body(bodies[1].box, bodies[0].box.x < 160 ? right : left);
