@@ -96,12 +96,13 @@ END_TEST
 START_TEST(a_picture_smaller_than_the_window_has_no_hits) {
   Image<std::uint8_t> picture({8, 8});
   for (const auto weights : {plugin::HogWeights::daimler, plugin::HogWeights::inria})
-    for (const double scale : {.01, .2, 1., 3.}) {
-      std::vector<PersonDetection> hits;
-      ck_assert(!plugin::make_hog_detector(weights, {.threshold = 9, .share = {}})
-                     ->detect(GrayView(picture.view()), scale, hits));
-      ck_assert(hits.empty());
-    }
+    for (const double scale : {.01, .2, 1., 3.})
+      for (const int padding : {0, 16, 64}) {
+        std::vector<PersonDetection> hits;
+        ck_assert(!plugin::make_hog_detector(weights, {.threshold = 9, .padding = padding})
+                       ->detect(GrayView(picture.view()), scale, hits));
+        ck_assert(hits.empty());
+      }
 }
 END_TEST
 

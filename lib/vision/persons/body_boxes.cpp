@@ -2,7 +2,6 @@
 #include "vision/persons/body_boxes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <tuple>
 
@@ -34,9 +33,8 @@ void suppress_overlaps(std::vector<PersonDetection>& hits, const BodyBoxParamete
 }
 
 bool is_one_body(const Box& a, const Box& b, const BodyBoxParameters& p) {
-  const double apart = std::abs(a.x + a.width / 2 - b.x - b.width / 2);
   const double smaller = std::min(a.area(), b.area());
-  return apart < std::max(a.width, b.width) / 2 && overlap_area(a, b) >= p.nested * smaller && smaller > 0;
+  return smaller > 0 && overlap_area(a, b) >= p.nested * smaller;
 }
 
 void keep_one_box_a_body(std::vector<PersonDetection>& bodies, const BodyBoxParameters& p) {
