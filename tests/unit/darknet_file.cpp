@@ -83,7 +83,9 @@ START_TEST(what_is_no_configuration_of_a_detector_is_refused_with_the_reason) {
                  "its layer 1 names a layer");
   expect_refused(kNet + "[route]\nlayers=0\n" + kYolo, "its layer 0 names a layer");
   expect_refused(kNet + "[yolo]\nnum=3\n", "names no classes");
-  expect_refused(kNet + kYolo + "[yolo]\nclasses=3\n", "different classes");
+  expect_refused(kNet + kYolo + "[yolo]\nmask=0\nclasses=3\n", "different classes");
+  for (const char* mask : {"2", "-1", "0,2", "", "x"})
+    expect_refused(kNet + "[yolo]\nmask=" + mask + "\nclasses=1\nnum=2\n", "an anchor that is not there");
 }
 END_TEST
 

@@ -33,6 +33,19 @@ std::optional<int> integer_in(std::string_view text) {
                                                                          : std::nullopt;
 }
 
+// Numbers with commas between them. nullopt: there is none, or one cannot be read.
+std::optional<std::vector<int>> integers_in(std::string_view text) {
+  std::vector<int> numbers;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(','), text.size());
+    const auto number = integer_in(text.substr(0, end));
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return numbers.empty() ? std::nullopt : std::optional(numbers);
+}
+
 struct Section {
   std::string_view name;
   std::vector<std::pair<std::string_view, std::string_view>> values;
@@ -106,16 +119,13 @@ class Layers {
   }
 
   std::optional<int> joined_planes(const Section& layer) const {
-    std::string_view rest = layer.text("layers");
-    const int groups = layer.number("groups", 1);
+    const auto named = integers_in(layer.text("layers"));
+    const int groups = layer.number("groups", 1), count = static_cast<int>(planes_.size());
+    if (!named) return std::nullopt;
     int sum = 0;
-    while (!rest.empty()) {
-      const std::size_t end = std::min(rest.find(','), rest.size());
-      const auto named = integer_in(rest.substr(0, end));
-      rest.remove_prefix(std::min(end + 1, rest.size()));
-      const auto count = static_cast<int>(planes_.size());
-      if (!named || *named >= count || *named < -count) return std::nullopt;
-      sum += planes_[static_cast<std::size_t>(*named < 0 ? count + *named : *named)];
+    for (const int n : *named) {
+      if (n >= count || n < -count) return std::nullopt;
+      sum += planes_[static_cast<std::size_t>(n < 0 ? count + n : n)];
       if (sum > kLargestCount) return std::nullopt;
     }
     return sum > 0 && groups > 0 ? std::optional(std::max(1, sum / groups)) : std::nullopt;
@@ -150,6 +160,13 @@ std::optional<DarknetNetwork> read_darknet_cfg(std::string_view cfg, std::string
     const int classes = layer.number("classes", 0);
     if (classes < 1 || classes > kLargestCount)
       return refuse("a [" + std::string(layer.name) + "] layer names no classes");
+    // OpenCV reads beyond the anchors.
+    if (layer.name == "yolo") {
+      const auto mask = integers_in(layer.text("mask"));
+      const int anchors = layer.number("num", 1);
+      if (!mask || std::ranges::any_of(*mask, [&](int n) { return n < 0 || n >= anchors; }))
+        return refuse("the mask of a [yolo] layer names an anchor that is not there");
+    }
     if (network.classes > 0 && classes != network.classes)
       return refuse("its [yolo] layers have different classes");
     network.classes = classes;
