@@ -66,8 +66,6 @@ void name(Numbers n, RegionParameters& p) {
          N(least_unknown),
          N(walked_to_be_seen),
          N(stirs),
-         N(walked_if_changed),
-         N(changed),
          N(beside),
          N(loose),
          N(feet),

@@ -12,9 +12,9 @@ namespace {
 struct Scene {
   WalkingBodies bodies;
   Scene() { bodies.preallocate(); }
-  double see(const Box& body, const Transform& motion = {}, bool free_head = true) {
+  double see(const Box& body, const Transform& motion = {}) {
     bodies.advance(motion);
-    return bodies.add(body, free_head).farthest;
+    return bodies.add(body).farthest;
   }
 };
 
@@ -37,7 +37,7 @@ START_TEST(a_body_that_rests_goes_nowhere_and_keeps_its_walk) {
   bodies.preallocate();
   for (int k = 0; k < 8; ++k) {
     bodies.advance({});
-    const WalkingBodies::Walk walk = bodies.add({100.0 + 10 * k, 50, 36, 100}, true, k < 4);
+    const WalkingBodies::Walk walk = bodies.add({100.0 + 10 * k, 50, 36, 100}, k < 4);
     ck_assert_double_eq_tol(walk.farthest, k < 2 ? 0 : std::min(0.1 * k, 0.3), 1e-6);
     ck_assert(walk.goes_on == (k == 2 || k == 3));
   }
@@ -70,29 +70,6 @@ START_TEST(a_body_that_is_not_where_it_is_expected_begins_anew) {
 }
 END_TEST
 
-// A neighbour hides the head in every other frame: the third frame that shows it is the fifth of the body.
-START_TEST(a_body_whose_head_is_hidden_now_and_then_has_walked_from_the_third_frame_on_that_shows_it) {
-  Scene s;
-  for (int k = 0; k < 8; ++k)
-    ck_assert_double_eq_tol(s.see({100.0 + 10 * k, 50, 36, 100}, {}, k % 2 == 0), k >= 4 ? 0.1 * k : 0, 1e-6);
-}
-END_TEST
-
-// The head is hidden in the first three frames: the way begins in the fourth.
-START_TEST(a_body_has_walked_from_where_its_head_was_free_first) {
-  Scene s;
-  for (int k = 0; k < 8; ++k)
-    ck_assert_double_eq_tol(s.see({100.0 + 10 * k, 50, 36, 100}, {}, k >= 3), k >= 5 ? 0.1 * (k - 3) : 0,
-                            1e-6);
-}
-END_TEST
-
-START_TEST(a_body_whose_head_is_never_free_has_not_walked) {
-  Scene s;
-  for (int k = 0; k < 10; ++k) ck_assert_double_eq(s.see({100.0 + 10 * k, 50, 36, 100}, {}, false), 0);
-}
-END_TEST
-
 // 100 pixels tall, a stride is 8: after 12 pixels, and again 9 pixels after that; then it stands.
 START_TEST(a_body_goes_on_by_strides_from_where_it_last_went_on) {
   WalkingBodies bodies;
@@ -101,7 +78,7 @@ START_TEST(a_body_goes_on_by_strides_from_where_it_last_went_on) {
   const bool goes_on[] = {false, false, true, false, false, true, false, false};
   for (int k = 0; k < 8; ++k) {
     bodies.advance(Transform::translation(7, 0));
-    ck_assert_int_eq(bodies.add({places[k] + 7 * k, 50, 36, 100}, true).goes_on, goes_on[k]);
+    ck_assert_int_eq(bodies.add({places[k] + 7 * k, 50, 36, 100}).goes_on, goes_on[k]);
   }
 }
 END_TEST
@@ -112,8 +89,8 @@ START_TEST(of_two_bodies_each_goes_on_from_the_nearer_place) {
   double left = 0, right = 0;
   for (int k = 0; k < 3; ++k) {
     bodies.advance({});
-    left = bodies.add({100, 50, 36, 100}, true).farthest;
-    right = bodies.add({140.0 + 5 * k, 50, 36, 100}, true).farthest;
+    left = bodies.add({100, 50, 36, 100}).farthest;
+    right = bodies.add({140.0 + 5 * k, 50, 36, 100}).farthest;
   }
   ck_assert_double_eq(left, 0);
   ck_assert_double_eq_tol(right, 0.1, 1e-6);
@@ -127,8 +104,8 @@ START_TEST(more_bodies_than_there_is_memory_for_have_not_walked) {
   for (int k = 0; k < 4; ++k) {
     bodies.advance({});
     for (std::size_t i = 0; i < WalkingBodies::kMost; ++i)
-      ck_assert_double_eq(bodies.add({100.0 * static_cast<double>(i), 50, 36, 100}, true).farthest, 0);
-    ck_assert_double_eq(bodies.add({-500 + 20.0 * k, 50, 36, 100}, true).farthest, 0);
+      ck_assert_double_eq(bodies.add({100.0 * static_cast<double>(i), 50, 36, 100}).farthest, 0);
+    ck_assert_double_eq(bodies.add({-500 + 20.0 * k, 50, 36, 100}).farthest, 0);
   }
   ck_assert_uint_eq(bodies.bytes(), bytes);
 }
@@ -141,8 +118,6 @@ int main() {
        a_body_that_rests_goes_nowhere_and_keeps_its_walk,
        a_body_that_stays_in_the_scene_has_not_walked_however_the_camera_turns,
        a_body_that_is_not_where_it_is_expected_begins_anew,
-       a_body_whose_head_is_hidden_now_and_then_has_walked_from_the_third_frame_on_that_shows_it,
-       a_body_has_walked_from_where_its_head_was_free_first, a_body_whose_head_is_never_free_has_not_walked,
        a_body_goes_on_by_strides_from_where_it_last_went_on, of_two_bodies_each_goes_on_from_the_nearer_place,
        more_bodies_than_there_is_memory_for_have_not_walked});
 }

@@ -49,12 +49,6 @@ struct RegionParameters {
   // and there in the place that somebody has left. 25 frames a second. swept: docs/quality.md, 0 to .1. Guard: unit steady,
   // where that place is a region for a frame with 0.
   double stirs = 0.03;
-  // Heights of a body that changes, which it has walked before it is published; its head may have been hidden in some frames.
-  // `changed` is the share of its foreground, at least, that differs from the frame before: the place that a person has left
-  // rests. swept: docs/quality.md, 0 to .1 and 0 to .4. Guard: unit (places, steady), where that place is a region for a frame
-  // with a share of 0.
-  double walked_if_changed = 0.04;
-  double changed = 0.3;
   // Share of a blob's foreground that its only body leaves unexplained and from which on the blob is a group. measured:
   // MOTA on TUD-Campus and TUD-Stadtmitte is .01 and .02 lower without; with .4 that on davis_tennis is .27 lower.
   double beside = 0.5;

@@ -60,9 +60,8 @@ struct RegionFinder::State {
   std::vector<Box> blocks, blocks_before;  // groups too wide and too solid for people, now and a frame ago
   std::vector<int> group;                  // of each component
   OutlineFinder outline_finder{parameters.outline};
-  std::vector<Outline> outlines;                // of each component
-  WalkingBodies bodies{parameters.bodies};      // all of them: a neighbour may hide a head for some frames
-  WalkingBodies free_heads{parameters.bodies};  // those with a free head, frame after frame
+  std::vector<Outline> outlines;            // of each component
+  WalkingBodies bodies{parameters.bodies};  // with a free head
   std::vector<Region> regions;
   int seen = 0;  // frames of this scene
 
@@ -76,9 +75,7 @@ struct RegionFinder::State {
   void group_components();
   void explain(int group);
   void explain_unknown(int group, const Bounds& window);
-  struct Walked;
-  Walked walked(const Box& body);
-  bool walks(const Box& body);
+  double walked(const Box& body);
   double changed(const Box& body) const;
   void add_plain(std::size_t component, RegionKind kind = RegionKind::thing);
   RegionKind kind_of(const Component& unexplained) const;
@@ -101,7 +98,6 @@ void RegionFinder::State::preallocate(Size picture) {
   outline_finder.preallocate(picture.width);
   vision::preallocate(outlines, parts);
   bodies.preallocate();
-  free_heads.preallocate();
   vision::preallocate(regions, std::max(parts, std::min(2 * parts, kMostRegions)));
   size = picture;  // assigned last: after a failed allocation the next call tries again
 }
@@ -260,25 +256,14 @@ void RegionFinder::State::add_people(int g, const Bounds& window, std::span<cons
   }
 }
 
-// How far a body whose head is free has been from its first place, in heights of the body. 0: it stands, its head is hidden
-// now, or was not free often enough.
-struct RegionFinder::State::Walked {
-  double head_free = 0;  // since the first of the last frames in a row with a free head
-  double at_all = 0;     // since its head was free first; it may have been hidden in some frames
-  double changed = 0;    // share of its foreground that differs from the frame before
-};
-
-// Records a body of this frame. Where its head is free frame after frame it teaches its height by every stride, as a walker
-// does: where people are never alone, and where the line of the heights is steeper than expected.
-RegionFinder::State::Walked RegionFinder::State::walked(const Box& body) {
-  const bool free_head = has_free_head(moving.view(), size, body, parameters.head);
-  const double share = changed(body);
-  const bool stirs = share >= parameters.regions.stirs;
-  const WalkingBodies::Walk any = bodies.add(body, free_head, stirs);
-  if (!free_head) return {};
-  const WalkingBodies::Walk walk = free_heads.add(body, true, stirs);
+// Records a body of this frame. Returns how far it has been from its first place, in heights of the body, its head free
+// frame after frame; 0: it stands, or its head is hidden. It teaches its height by every stride, as a walker does: where
+// people are never alone, and where the line of the heights is steeper than expected.
+double RegionFinder::State::walked(const Box& body) {
+  if (!has_free_head(moving.view(), size, body, parameters.head)) return 0;
+  const WalkingBodies::Walk walk = bodies.add(body, changed(body) >= parameters.regions.stirs);
   if (walk.goes_on) prior.learn(body.bottom(), body.height, body.height);
-  return {walk.farthest, any.farthest, share};
+  return walk.farthest;
 }
 
 // Share of a body's foreground that differs from the frame before: the place that a person has left rests.
@@ -295,15 +280,6 @@ double RegionFinder::State::changed(const Box& body) const {
   return all > 0 ? static_cast<double>(changed) / static_cast<double>(all) : 0;
 }
 
-// Records a body of this frame. Returns whether its head is free and it has walked. What hardly changes must have walked
-// farther, its head free all the way: it may be the place that a person has left.
-bool RegionFinder::State::walks(const Box& body) {
-  const RegionParameters& p = parameters.regions;
-  const Walked far = walked(body);
-  return far.head_free > p.walked_to_be_seen ||
-         (std::max(far.head_free, far.at_all) > p.walked_if_changed && far.changed >= p.changed);
-}
-
 // A blob before the height of people is known. The bodies that explain it are persons where their heads are seen and they
 // walk: bodies explain cars, noise and the place that a person has left as well. Otherwise several bodies are a group, and
 // so is one that leaves much unexplained, if there are the gaps that people leave.
@@ -312,7 +288,7 @@ void RegionFinder::State::explain_unknown(int g, const Bounds& window) {
   const auto found = people.find(moving.view(), window, prior);
   std::array<Person, PeopleFinder::kMostPeople> persons;
   const auto end = std::ranges::copy_if(found, persons.begin(), [&](const Person& person) {
-                     return walks(person.box);
+                     return walked(person.box) > p.walked_to_be_seen;
                    }).out;
   const std::span<const Person> walking(persons.begin(), end);
   const double rest = unexplained(window, found);
@@ -396,7 +372,6 @@ void RegionFinder::reset() {
   state_->prior.reset();
   state_->walkers.clear();
   state_->bodies.reset();
-  state_->free_heads.reset();
   state_->blocks.clear();
   state_->blocks_before.clear();
   state_->regions.clear();
@@ -408,7 +383,7 @@ std::size_t RegionFinder::bytes() const {
   return sizeof(State) + s.moving.bytes() + s.closed.bytes() + s.morphology.bytes() + s.labeller.bytes() +
          s.parting.bytes() + s.people.bytes() + bytes_of(s.walkers) + bytes_of(s.walkers_before) +
          bytes_of(s.blocks) + bytes_of(s.blocks_before) + bytes_of(s.group) + bytes_of(s.outlines) +
-         s.bodies.bytes() + s.free_heads.bytes() + s.outline_finder.bytes() + bytes_of(s.regions);
+         s.bodies.bytes() + s.outline_finder.bytes() + bytes_of(s.regions);
 }
 
 std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uint16_t> labels,
@@ -424,7 +399,6 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
   ++s.seen;
   s.prior.advance(motion, s.size);
   s.bodies.advance(motion);
-  s.free_heads.advance(motion);
   pack(mask, s.moving.view());
   s.change = change.difference.size() == mask.size() ? change : Change{};
   std::memcpy(s.closed.view().data, s.moving.view().data, s.moving.bytes());

@@ -37,7 +37,7 @@ class RegionFinder {
   // mask: in the moving area (0 / 255), out the cleaned mask that the regions were made from. labels: 0 = background,
   // may be empty. motion: frame k-1 to k, analysis pixels, by which the learnt heights move with the camera. change: what rests at the
   // sides of a person who moves is not of his box. While the height of people is not known, what rests is not parted from its
-  // neighbours and has not walked, and who has walked little is a person only if he changes. The span lives until the next
+  // neighbours. The span lives until the next
   // call. Memory is bounded and allocated at the first picture of a size; components beyond it are clutter, see Labeller.
   std::span<const Region> update(MutableGrayView mask, View<std::uint16_t> labels, const Transform& motion,
                                  const Change& change = {});

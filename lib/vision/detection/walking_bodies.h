@@ -26,7 +26,7 @@ class WalkingBodies {
     // Of the larger height that the smaller one has, at least, from frame to frame. derived: two steps of the heights that
     // PeopleFinder tries.
     double same_height = 0.8;
-    int least_frames = 3;  // in which its head is free, before a distance counts. As a walker's
+    int least_frames = 3;  // before a distance counts. As a walker's
     // Distance that is one more sample of its height: what stands teaches nothing. measured: MOTA on TUD-Stadtmitte is .017,
     // .006 with .06 and .004 with .1, that on PETS09-S2L1 .731, .731 and .727 (docs/quality.md); with a sample every frame a
     // clock over the picture costs 1.1 % of the recall.
@@ -46,9 +46,9 @@ class WalkingBodies {
   void reset();
   // Called once a frame, before add(). motion: frame k-1 to k, pixels.
   void advance(const Transform& motion);
-  // Records a body of this frame, pixels. Returns its walk; none before its head was free in least_frames frames. stirs: it
-  // differs from the frame before. What rests goes nowhere in this frame, wherever it is found, and keeps its walk.
-  Walk add(const Box& body, bool free_head, bool stirs = true);
+  // Records a body of this frame, pixels. Returns its walk; none before its least_frames-th frame in a row. stirs: it differs
+  // from the frame before. What rests goes nowhere in this frame, wherever it is found, and keeps its walk.
+  Walk add(const Box& body, bool stirs = true);
   std::size_t bytes() const;
 
  private:
@@ -58,7 +58,7 @@ class WalkingBodies {
   struct Body {
     Place foot, first, last;  // last: where it last went on
     float height, farthest;
-    int frames;  // with a free head
+    int frames;
   };
   static double distance(const Place& a, const Place& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
@@ -86,12 +86,12 @@ inline void WalkingBodies::advance(const Transform& motion) {
     }
 }
 
-inline WalkingBodies::Walk WalkingBodies::add(const Box& box, bool free_head, bool stirs) {
+inline WalkingBodies::Walk WalkingBodies::add(const Box& box, bool stirs) {
   const Parameters& q = parameters_;
   if (now_.size() == kMost) return {};
   const double h = box.height;
   const Place foot{static_cast<float>(box.x + box.width / 2), static_cast<float>(box.bottom())};
-  Body body{foot, foot, foot, static_cast<float>(h), 0, free_head};
+  Body body{foot, foot, foot, static_cast<float>(h), 0, 1};
   double nearest = std::numeric_limits<double>::infinity();
   for (const Body& b : before_) {
     const double away = distance(b.foot, foot);
@@ -100,9 +100,7 @@ inline WalkingBodies::Walk WalkingBodies::add(const Box& box, bool free_head, bo
         std::min<double>(h, b.height) < q.same_height * std::max<double>(h, b.height))
       continue;
     nearest = away;
-    // A body hardly fits where its head is hidden: it walks from where its head was free first.
-    body = {foot,       b.frames > 0 ? b.first : foot, b.last, static_cast<float>(h),
-            b.farthest, b.frames + free_head};
+    body = {foot, b.first, b.last, static_cast<float>(h), b.farthest, b.frames + 1};
   }
   Walk walk;
   if (body.frames >= q.least_frames) walk.farthest = body.farthest;
