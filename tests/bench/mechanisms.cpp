@@ -103,7 +103,7 @@ const std::vector<Mechanism> kMechanisms{
 
     // Tracks.
     {"appearance",
-     {"tracking/appearance_model.*", "tracking/region_appearances.*", "tracking/identity_swap.*"},
+     {"tracking/appearance_model.*", "tracking/region_appearances.*"},
      17,
      {"appearance.least_samples=1000000"}},
     {"appearance_in_groups", {"tracking/region_appearances.cpp find"}, 8, {"search.familiar=-1"}},
@@ -112,11 +112,6 @@ const std::vector<Mechanism> kMechanisms{
      6,
      {"association.appearance_cost=0", "association.known_cost=0", "association.sudden_change=2",
       "association.off_screen_change=2", "association.usual_change=2"}},
-    {"identity_swap",
-     {"tracking/identity_swap.cpp undo_identity_swaps", "tracking/identity_swap.cpp within_reach",
-      "tracking/identity_swap.cpp exchange", "tracking/identity_swap.cpp saved"},
-     7,
-     {"swap.gain=1000000"}},
     {"follow_leap", {"tracking/data_association.cpp follow_leap"}, 1, {"association.leap=0"}},
     {"gather_fragments",
      {"tracking/data_association.cpp gather_fragments"},

@@ -178,8 +178,6 @@ void name(Numbers n, TrackParameters& p) {
          N(appearance_time),
          N(appearance_frames),
          N(recent_time),
-         N(recent_frames),
-         N(ambiguous_time),
          N(freeze),
          N(relearn),
          N(changed),
@@ -223,10 +221,6 @@ void name(Numbers n, AppearanceParameters& p) {
          N(least_samples)});
 }
 
-void name(Numbers n, IdentitySwapParameters& p) {
-  n.add({N(gain), N(contact), N(parting), N(longest)});
-}
-
 void name(Numbers n, ViewParameters& p) {
   n.add({N(newly_visible), N(newly_visible_share)});
 }
@@ -268,7 +262,6 @@ std::vector<NamedNumber> named_numbers(DetectorParameters& p) {
   stage("association", p.tracking.association);
   stage("search", p.tracking.search);
   stage("appearance", p.tracking.appearance);
-  stage("swap", p.tracking.swap);
   stage("view", p.tracking.view);
   return all;
 }

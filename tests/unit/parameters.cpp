@@ -86,7 +86,6 @@ START_TEST(every_number_of_every_stage_has_a_name_of_its_own) {
   all_are_named("association", t.association);
   all_are_named("search", t.search);
   all_are_named("appearance", t.appearance);
-  all_are_named("swap", t.swap);
   all_are_named("view", t.view);
   std::set<std::string> names;
   for (const NamedNumber& n : named_numbers(p))

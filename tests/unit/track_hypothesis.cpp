@@ -441,16 +441,57 @@ START_TEST(each_transition_leads_to_its_state) {
 }
 END_TEST
 
+// Learning goes on half a second after contact; a changed appearance is learnt after four.
+START_TEST(the_appearance_model_is_frozen_after_contact) {
+  constexpr double kStep = 0.1;  // s
+  const auto looks = [](int bin) {
+    AppearanceModel look;
+    for (auto& band : look.share) band[bin] = AppearanceModel::kAll;
+    return look;
+  };
+  const auto seen = [](TrackHypothesis& track, const AppearanceModel& look, int frames) {
+    for (int k = 0; k < frames; ++k) {
+      track.predict(kStep);
+      track.remember(look, kStep, true);
+    }
+  };
+  TrackHypothesis slowly = walker(200, 150), suddenly = walker(400, 150);
+  for (TrackHypothesis* track : {&slowly, &suddenly}) {
+    seen(*track, looks(1), 50);
+    track->touch();
+  }
+  AppearanceModel a_little = looks(1);
+  for (auto& band : a_little.share) {
+    band[1] -= AppearanceModel::kAll / 5;
+    band[2] += AppearanceModel::kAll / 5;
+  }
+  seen(slowly, a_little, 4);
+  ck_assert_double_eq(appearance_distance(slowly.appearance.model, looks(1)), 0);
+  ck_assert_double_eq_tol(slowly.appearance.learnt, 50 * kStep, 1e-9);
+  seen(slowly, a_little, 16);
+  ck_assert_double_gt(slowly.appearance.learnt, 64 * kStep);
+  ck_assert_double_gt(appearance_distance(slowly.appearance.model, looks(1)), 0.07);
+  seen(suddenly, looks(6), 39);
+  ck_assert_double_eq(appearance_distance(suddenly.appearance.model, looks(1)), 0);
+  seen(suddenly, looks(6), 60);
+  ck_assert_double_lt(appearance_distance(suddenly.appearance.model, looks(6)), 0.3);
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "track_hypothesis",
-      {a_moving_camera_s_track_shrinks_in_its_second_frame_of_a_twentieth_second_at_least,
+      {the_appearance_model_is_frozen_after_contact,
+       a_moving_camera_s_track_shrinks_in_its_second_frame_of_a_twentieth_second_at_least,
        before_a_moving_camera_a_width_that_grows_is_followed_faster,
        before_a_moving_camera_a_track_s_velocity_is_less_certain,
        the_velocity_of_what_is_faster_than_a_jogger_is_less_certain,
-       after_a_leap_the_velocity_is_that_of_the_leap, a_track_becomes_as_wide_as_somebody_in_mid_stride,
-       a_region_that_fits_exactly_is_at_no_distance, each_transition_leads_to_its_state,
-       a_zoom_scales_all_of_its_lengths, what_the_edge_cuts_or_another_shares_is_not_seen_whole,
+       after_a_leap_the_velocity_is_that_of_the_leap,
+       a_track_becomes_as_wide_as_somebody_in_mid_stride,
+       a_region_that_fits_exactly_is_at_no_distance,
+       each_transition_leads_to_its_state,
+       a_zoom_scales_all_of_its_lengths,
+       what_the_edge_cuts_or_another_shares_is_not_seen_whole,
        a_camera_that_rolls_turns_the_velocity,
        a_fragment_replaces_the_track_if_it_leaves_its_place_in_the_scene,
        towards_the_picture_s_middle_an_off_screen_track_shrinks_as_a_pinhole_projects_it,

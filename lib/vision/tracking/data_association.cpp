@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vision/tracking/identity_swap.h"
-
 namespace cerberus::vision {
 namespace {
 

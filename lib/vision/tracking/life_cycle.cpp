@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vision/tracking/identity_swap.h"
-
 namespace cerberus::vision {
 
 void LifeCycle::confirm(TrackHypothesis& t, std::uint32_t id) {

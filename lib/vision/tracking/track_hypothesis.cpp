@@ -269,15 +269,6 @@ bool TrackHypothesis::has_appearance() const {
   return appearance.frames >= parameters->appearance_frames;
 }
 
-bool TrackHypothesis::has_recent_appearance() const {
-  return appearance.recent_frames >= parameters->recent_frames;
-}
-
-bool TrackHypothesis::is_ambiguous() const {
-  return appearance.since_contact < parameters->ambiguous_time ||
-         appearance_distance(appearance.model, appearance.recent) > parameters->changed;
-}
-
 void TrackHypothesis::touch() {
   appearance.since_contact = 0;
   appearance.recent_frames = 0;
@@ -303,6 +294,19 @@ void TrackHypothesis::remember(const AppearanceModel& seen, double seconds, bool
   if (has_appearance() && frozen) return;
   learn(a.model, a.frames, q.appearance_time);
   a.learnt += seconds;
+}
+
+bool went_apart(const TrackHypothesis& a, const TrackHypothesis& b) {
+  const double both = std::min(a.age, b.age);
+  if (!(both > 0)) return false;
+  const double x = (a.x.position - a.travel.origin.x) / a.age - (b.x.position - b.travel.origin.x) / b.age;
+  const double y = (a.y.position - a.travel.origin.y) / a.age - (b.y.position - b.travel.origin.y) / b.age;
+  return std::hypot(x, y) * both > a.parameters->apart * std::max(a.size(), b.size());
+}
+
+bool look_different(const TrackHypothesis& a, const TrackHypothesis& b) {
+  return a.has_appearance() && b.has_appearance() &&
+         appearance_distance(a.appearance.model, b.appearance.model) > a.parameters->different;
 }
 
 }  // namespace cerberus::vision

@@ -211,10 +211,6 @@ struct TrackHypothesis {
   void touch();
   // Returns whether the appearance model distinguishes the object from others.
   bool has_appearance() const;
-  // The same for the appearance since the last contact.
-  bool has_recent_appearance() const;
-  // The identity is in doubt: contact a moment ago, or a changed appearance.
-  bool is_ambiguous() const;
 
  private:
   // A region beside the box in which the track expects it.
@@ -250,5 +246,10 @@ struct TrackHypothesis {
   void take_kind(RegionKind seen, bool alone, bool fits, double seconds);
   void note_seen(double seen_confidence, bool fits, double size_before, double seconds);
 };
+
+// The two have gone different ways for as long as both exist. Fragments of one object never do.
+bool went_apart(const TrackHypothesis& a, const TrackHypothesis& b);
+// Both appearances are known and so different that they are two objects.
+bool look_different(const TrackHypothesis& a, const TrackHypothesis& b);
 
 }  // namespace cerberus::vision

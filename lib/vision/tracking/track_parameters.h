@@ -107,8 +107,6 @@ struct TrackParameters {
   double appearance_time = 2.0;  // s, time constant. derived: a person turns round within it
   int appearance_frames = 3;     // frames from which on the model counts
   double recent_time = 0.5;      // s, time constant of the recent appearance
-  int recent_frames = 3;         // frames from which on it counts
-  double ambiguous_time = 2.0;   // s after contact with another track in which an identity swap is considered
   double freeze = 0.5;           // s after contact in which the model learns nothing
   double relearn = 4.0;          // s after contact after which a changed appearance is learnt all the same
   double changed = 0.3;  // appearance distance beyond which the recent appearance may be another object's

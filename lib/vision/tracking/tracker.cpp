@@ -255,7 +255,6 @@ std::span<const Track> Tracker::update(std::span<const Region> regions, const Tr
   s.associate();
   s.life_cycle.end_hollow(s.tracks, s.regions);
   s.remove_lost();
-  undo_identity_swaps(s.tracks, s.parameters.swap);
   s.start_tracks();
   s.life_cycle.advance(s.tracks, {frame, s.seconds, s.turning, s.orientation.gaze(), s.orientation.turns()},
                        s.options);

@@ -4,7 +4,6 @@
 
 #include "vision/tracking/appearance_model.h"
 #include "vision/tracking/data_association.h"
-#include "vision/tracking/identity_swap.h"
 #include "vision/tracking/life_cycle.h"
 #include "vision/tracking/region_appearances.h"
 #include "vision/tracking/track_parameters.h"
@@ -25,7 +24,6 @@ struct TrackingParameters {
   DataAssociation::Parameters association;
   RegionAppearances::Parameters search;
   AppearanceParameters appearance;
-  IdentitySwapParameters swap;
   ViewParameters view;
 };
 
