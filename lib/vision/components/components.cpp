@@ -51,17 +51,19 @@ FrameWindows FrameWindows::of(double seconds) {
   const auto frames = [seconds](double time, int least) {
     return static_cast<int>(std::clamp(std::round(time / seconds), static_cast<double>(least), 250.0));
   };
-  return {frames(0.04, 1), frames(0.12, 3), frames(1, 8), frames(2, 8), frames(10, 50)};
+  return {frames(0.04, 1), frames(0.12, 3), frames(1, 8), frames(2, 8), frames(10, 50), seconds};
 }
 
 void ForegroundComponents::preallocate(Size picture) {
   labeller_.preallocate(picture);
   evidence_.reserve(labeller_.limits().components);
+  flashes_.preallocate(picture, labeller_.limits().components);
   origins_.preallocate(picture);
   resting_ghosts_.preallocate(picture);
 }
 
 void ForegroundComponents::reset() {
+  flashes_.reset();
   origins_.reset();
   moved_ = kParameters.shake;
 }
@@ -232,6 +234,7 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
   measure(input, windows, mask);
   for (std::size_t i = 0; i < components.size(); ++i) decide(input, components[i], evidence_[i]);
   if (input.is_aligned() && input.mechanisms.sides_go_on) doubt_edges(input, mask);
+  if (input.mechanisms.flashes && input.still) remove_flashes(input, windows, mask);
   if (input.still) {
     if (components.size() <= kParameters.most_components) {
       if (input.mechanisms.find_ghosts) find_ghosts();
@@ -260,6 +263,17 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
   return young_objects;
 }
 
+// Flashes are neither objects nor, as the doubtful are, taken over by the model.
+void ForegroundComponents::remove_flashes(const ComponentInput& input, const FrameWindows& windows,
+                                          BitView mask) {
+  flashes_.find(input.frame.size(), mask, labeller_.components(), labeller_.runs(), windows.seconds);
+  for (std::size_t i = 0; i < evidence_.size(); ++i) {
+    Evidence& evidence = evidence_[i];
+    evidence.flash = flashes_.is_flash(i, labeller_.components()[i]);
+    if (evidence.flash) evidence.kept = evidence.object = evidence.doubtful = false;
+  }
+}
+
 // What rests and is an object by its sides only is none where these are edges of the scene.
 void ForegroundComponents::doubt_edges(const ComponentInput& input, BitView mask) {
   const auto components = labeller_.components();
@@ -281,7 +295,7 @@ void ForegroundComponents::absorb_rest(const ComponentInput& input, const FrameW
   for (int y = 0; y < absorb.height; ++y) std::fill_n(absorb.row(y), absorb.width, std::uint64_t{0});
   for (const Run& r : labeller_.runs()) {
     const Evidence& evidence = evidence_[r.component];
-    if (evidence.kept) continue;
+    if (evidence.kept || evidence.flash) continue;
     for (int x = r.first; x < r.end; ++x) {
       const int patience =
           input.still && evidence.object
@@ -346,7 +360,7 @@ void ForegroundComponents::merge_neighbours(const ComponentInput& input, const F
 }
 
 std::size_t ForegroundComponents::bytes() const {
-  return labeller_.bytes() + evidence_.capacity() * sizeof(Evidence) + origins_.bytes() +
+  return labeller_.bytes() + evidence_.capacity() * sizeof(Evidence) + flashes_.bytes() + origins_.bytes() +
          resting_ghosts_.bytes();
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vision/components/component_origins.h"
+#include "vision/components/flashes.h"
 #include "vision/components/resting_ghosts.h"
 #include "vision/geometry/warp.h"
 #include "vision/image/image.h"
@@ -24,17 +25,19 @@ inline constexpr std::uint8_t kRelearn = 4;
 
 // Durations in frames. The limits are those of the planes' 8 bits.
 struct FrameWindows {
-  int fresh = 1;    // 0.04 s: motion in the last frame
-  int moving = 3;   // 0.12 s, at least 3 frames: a pixel that moved so lately is moving
-  int recent = 25;  // 1 s: a pixel that moved so lately may have stopped for a moment
-  int young = 50;   // 2 s: a background learnt for less may show an object
-  int hold = 250;   // 10 s, 50 to 250 frames: how long an object that stopped stays foreground
-  // seconds: from frame to frame, > 0.
+  int fresh = 1;          // 0.04 s: motion in the last frame
+  int moving = 3;         // 0.12 s, at least 3 frames: a pixel that moved so lately is moving
+  int recent = 25;        // 1 s: a pixel that moved so lately may have stopped for a moment
+  int young = 50;         // 2 s: a background learnt for less may show an object
+  int hold = 250;         // 10 s, 50 to 250 frames: how long an object that stopped stays foreground
+  double seconds = 0.04;  // from frame to frame
+  // seconds: > 0.
   static FrameWindows of(double seconds);
 };
 
 // What may be left out: see background/mechanisms.h.
 struct ComponentMechanisms {
+  bool flashes = true;           // flashes.h
   bool was_empty = true;         // what left the picture moves no more: decide()
   bool sides_go_on = true;       // component_sides.h
   bool origins = true;           // component_origins.h
@@ -95,12 +98,14 @@ class ForegroundComponents {
     bool object = false, ghost = false;  // decided by the outline; both false: undecided
     bool doubtful = false;               // stays only while it moves
     bool kept = false;                   // is an object
+    bool flash = false;                  // is none, and nothing is learnt from it
     bool merged = false;                 // with a neighbour
     bool fragment = false;               // of a larger neighbour
   };
   void measure(const ComponentInput& input, const FrameWindows& windows, BitView mask);
   void measure_edges(const ComponentInput& input, const Run& run, BitView mask, Evidence& evidence) const;
   void decide(const ComponentInput& input, const Component& component, Evidence& evidence) const;
+  void remove_flashes(const ComponentInput& input, const FrameWindows& windows, BitView mask);
   void doubt_edges(const ComponentInput& input, BitView mask);
   void find_ghosts();
   void resolve_origins();
@@ -108,6 +113,7 @@ class ForegroundComponents {
 
   Labeller labeller_;
   std::vector<Evidence> evidence_;  // by component
+  Flashes flashes_;
   ComponentOrigins origins_;
   RestingGhosts resting_ghosts_;
   int moved_ =
