@@ -183,11 +183,15 @@ void Detector::track(Analysis& record, const DetectorFrame& frame, std::span<con
   if (frame.fresh) {
     tracker_.reset();
     calm_.reset();
+    own_motion_.reset();
   } else if (record.camera) {
     calm_.add(record.camera->corners, tracked_, frame.size, frame.seconds);
     record.camera.stored().calm = calm_.share();
   }
+  own_motion_.begin_frame(record.differences ? GrayView(record.differences->current->view()) : GrayView{},
+                          calm_.share(), frame.seconds);
   tracked_.clear();
+  withholds_ = false;
   const Lens lens = frame.lens(options_.field_of_view);
   std::optional<CameraOrientation> orientation;
   if (frame.look && lens.known()) orientation = {lens, frame.look->pan, frame.look->tilt};
@@ -195,6 +199,13 @@ void Detector::track(Analysis& record, const DetectorFrame& frame, std::span<con
   if (record.foreground && record.foreground->background)
     sight.background = record.foreground->background->view();
   const double tilt = frame.look ? frame.look->tilt : options_.tilt;
+  const auto in_difference = [&](const Box& box) -> Box {
+    if (!record.differences) return box;
+    const Size size = record.differences->current->size();
+    const double sx = static_cast<double>(size.width) / frame.size.width;
+    const double sy = static_cast<double>(size.height) / frame.size.height;
+    return {box.x * sx, box.y * sy, box.width * sx, box.height * sy};
+  };
   std::vector<Track>& out = record.tracks.write();
   for (Track track :
        tracker_.update(regions, frame.motion.transform, frame.seconds, frame.size, orientation, sight)) {
@@ -206,8 +217,13 @@ void Detector::track(Analysis& record, const DetectorFrame& frame, std::span<con
     }
     track.bearing = place.bearing;
     track.distance = place.distance;
-    out.push_back(track);
     tracked_.push_back(track.box);
+    const bool moves =
+        own_motion_.supports(track.id, in_difference(track.box), track.state == TrackState::seen);
+    if (moves || frame.persons)
+      out.push_back(track);
+    else
+      withholds_ = true;
   }
 }
 

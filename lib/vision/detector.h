@@ -10,6 +10,7 @@
 
 #include "vision/analysis.h"
 #include "vision/burnt_in/burnt_in.h"
+#include "vision/change/own_motion_evidence.h"
 #include "vision/detection/limits.h"
 #include "vision/detection/regions.h"
 #include "vision/duplicate_frames.h"
@@ -65,6 +66,8 @@ struct DetectorFrame {
       0;  // horizontal, radians, as the head's zoom says; 0: as the options say; NaN: unknown zoom
   std::span<const Box> burnt_in;  // analysis pixels, as learnt by a later stage elsewhere: no scene
   bool everything = false;        // D(k-1) and the labels are made too: an element reads them
+  bool persons =
+      false;  // a person detector judges the tracks: those that only motion supports are published as well
   // otherwise: horizontal field of view of a frame of which no zoom is known, radians; 0: unknown.
   Lens lens(double otherwise) const { return {field_of_view > 0 ? field_of_view : otherwise, size}; }
 };
@@ -105,6 +108,8 @@ class Detector {
   bool zones_unplaced() const { return zones_.need_orientation() && !zones_placed_; }
   // regions: of the record, or found elsewhere; boxes in frame pixels. Tracks outside the limits of speed are left out.
   void track(Analysis& record, const DetectorFrame& frame, std::span<const Region> regions);
+  // Whether tracks of the last frame were left out because their motion may be the scene's (OwnMotionEvidence).
+  bool withholds_tracks() const { return withholds_; }
 
   // The stages after the camera, up to `last` and at most the regions, whose fields are absent.
   void complete(Analysis& record, const DetectorFrame& frame, Stage last);
@@ -142,7 +147,9 @@ class Detector {
   bool zones_placed_ = false;
   Tracker tracker_;
   SceneCalm calm_;
+  OwnMotionEvidence own_motion_;
   std::vector<Box> tracked_;  // the tracks' boxes of the last frame
+  bool withholds_ = false;
   BoxEdgeParameters edge_;
   ForegroundMechanisms mechanisms_;
   Size foreground_size_, regions_size_;

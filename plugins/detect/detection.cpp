@@ -148,6 +148,7 @@ Analyser::Outcome Detection::analyse(Frame& frame) {
 
   bool keep = true;
   frame.everything = (frame.wanted & kRecordForReaders) != 0;
+  frame.persons = (frame.wanted & kAllTracks) != 0;
   if (has(Stage::regions)) {
     const int how = state.settings.keep_planes;
     frame.everything = how == KEEP_PLANES_ALWAYS || (how == KEEP_PLANES_AUTO && frame.everything);
@@ -170,6 +171,7 @@ Analyser::Outcome Detection::analyse(Frame& frame) {
     if (known) read_regions(frame.buffer);
     state.detector.track(*record, frame, known ? state.found : record->regions->regions);
     publish_tracks(frame.buffer, *record);
+    complain_of_scene(frame.seconds);
     watch(frame, frame.seconds > 0 ? std::max(frame.seconds - state.repeated, 1e-9) : 0);
     keep = record->regions && record->regions->labels;  // made only for readers downstream
   }
@@ -205,6 +207,21 @@ void Detection::repeat(Frame& frame) {
     for (CerberusRegion& region : state.published) region.age += clock_time(step);
   attach_published(frame.buffer);
   if (has(Stage::tracks)) watch(frame, step);
+}
+
+// Once a stream, after tracks have been withheld for a second: of fewer nobody misses anything.
+void Detection::complain_of_scene(double seconds) {
+  constexpr double kLong = 1;
+  State& state = *state_;
+  if (!state.detector.withholds_tracks() || state.withheld > kLong) return;
+  state.withheld += seconds;
+  if (state.withheld <= kLong) return;
+  CERBERUS_ELEMENT_INFO(base, STREAM, FAILED,
+                        ("Much of the scene moves in ways that a turn of the camera does not explain: the "
+                         "picture blurs or shakes, or "
+                         "the camera drives past what is near. Only what clearly moves by itself is found "
+                         "there. To find people there, put `personverify require=person` behind."),
+                        ("tracks without more motion inside than around them are left out"));
 }
 
 void Detection::watch(const Frame& frame, double step) {

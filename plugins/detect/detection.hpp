@@ -62,6 +62,7 @@ class Detection : public Analyser {
     Stamps stamps;
     std::string zones;  // as last read
     NothingFound no_regions, no_tracks, no_places;
+    double withheld = 0;       // seconds for which tracks were left out
     int unplaced = 0;          // frames in a row in which zones of the world have no place
     vision::Size frame, mask;  // for which no_regions was judged last
     bool nowhere = false, judge = true;
@@ -82,6 +83,7 @@ class Detection : public Analyser {
   std::string why_no_regions(vision::Size frame, vision::Size mask);
   std::string why_no_tracks() const;
   void watch(const Frame& frame, double step);
+  void complain_of_scene(double seconds);
 
   const vision::Stage first_, last_;
   std::optional<State> state_;

@@ -15,6 +15,11 @@
  * head looks) and, where its feet are seen, a distance (metres); the camera's `tilt` counts for it, or that of a head's
  * pose on the frame. Limits of speed that contradict each other and a `confirm-time` above an hour are warned of.
  *
+ * Where the camera's motion does not explain the scene (the picture blurs or shakes, or the camera drives past near
+ * things), an object is published only while more changes inside its box than around it; an info message says so, once
+ * a stream. `personverify require=person` behind judges all of them itself, and gets them all. This needs the planes of the
+ * stages, too.
+ *
  * Posts `cerberus-motion` element messages: `state=started` with the objects when the first appears, `state=ended` when
  * none was there for `hold-time`, at the end of the stream and when the element stops, with the objects of the last
  * frame that had any. Where the source is live and frames stop coming, it is posted `hold-time` after the last one, by

@@ -27,11 +27,12 @@ struct ThresholdFacts {
 const ThresholdFacts* threshold_facts_of(GstBuffer* buffer);
 void set_threshold_facts(GstBuffer* buffer, const ThresholdFacts& facts);
 
-// Queries whether an element downstream needs the record. Every such element adds its flag, in each branch of a tee;
-// the query is therefore passed on, and its result is the flags, not the return value.
+// Queries what elements downstream need. Every such element adds its flag, in each branch of a tee; the query is therefore
+// passed on, and its result is the flags, not the return value.
 enum : guint {
   kRecordForTracks = 1,   // as it is, as far as the motiontrack that takes it off
   kRecordForReaders = 2,  // with D(k-1) and the labels
+  kAllTracks = 4,         // no record, but the tracks that only motion supports: it judges them
 };
 guint ask_for_record(GstPad* srcpad);
 bool is_record_query(GstQuery* query);

@@ -14,6 +14,8 @@
  * - other tracks stay as they were, or are left out (`require=person`): `pirfusion` and `pantiltsink` behind then
  *   follow persons only.
  *
+ * With `require=person` the tracker upstream passes on what it would doubt by itself: see `motiontrack`.
+ *
  * Between two looks of the detector a person goes on as fast as the looks have shown, or with a track that three looks in a
  * row have found right, or, once a look has left the person out, with a bound track of the person's size. One without a
  * track whom the last look at the place missed is left out until a look shows the person again, and so is one whom a single
@@ -95,6 +97,7 @@
 #include "shared/clock_times.hpp"
 #include "shared/complaint.hpp"
 #include "shared/properties.hpp"
+#include "shared/record.hpp"
 #include "shared/video.hpp"
 #include "vision/clocked_times.h"
 #include "vision/frame_history.h"
@@ -206,6 +209,7 @@ struct State {  // streaming thread only
   vision::LookWorker worker;
   std::optional<Pending> pending;
   std::optional<bool> live;
+  std::optional<int> require;  // as last seen
   vision::FrameHistory history{vision::FrameHistory::Parameters{.gap_seconds = kLongestGap}};
   GstClockTime last = GST_CLOCK_TIME_NONE, next_look = GST_CLOCK_TIME_NONE;
   std::vector<vision::Candidate> candidates, candidates_before;  // of this frame, of the one before
@@ -248,7 +252,7 @@ gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
     Private& priv = *cerberus_person_verify_self(transform)->priv;
     State& state = priv.state;
     state.caps.forget(), state.frame.forget();
-    state.live.reset();
+    state.live.reset(), state.require.reset();
     const Settings settings = priv.settings.snapshot();
     const bool model = !settings.model.empty();
     const auto kind = model                               ? cerberus::plugin::DetectorKind::model
@@ -419,6 +423,8 @@ GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, G
     Private& priv = *cerberus_person_verify_self(transform)->priv;
     State& state = priv.state;
     const Settings settings = priv.settings.snapshot();
+    if (state.require && state.require != settings.require) gst_base_transform_reconfigure_sink(transform);
+    state.require = settings.require;
     if (!state.live) state.live = cerberus::plugin::is_live(GST_BASE_TRANSFORM_SINK_PAD(transform));
     cerberus::VideoFrame frame(state.info, buffer, GST_MAP_READ);
     const std::string wrong = frame ? "" : "A frame cannot be read: its tracks are not verified.";
@@ -460,6 +466,16 @@ GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, G
   });
 }
 
+// What is published only where the detector confirms it may come unproven; all else only as motion proves it.
+gboolean cerberus_person_verify_query(GstBaseTransform* transform, GstPadDirection direction,
+                                      GstQuery* query) {
+  const Private& priv = *cerberus_person_verify_self(transform)->priv;
+  if (direction == GST_PAD_SINK && cerberus::plugin::is_record_query(query) &&
+      priv.settings.snapshot().require == REQUIRE_PERSON)
+    cerberus::plugin::add_wanted(query, cerberus::plugin::kAllTracks);
+  return cerberus_person_verify_parent_class()->query(transform, direction, query);
+}
+
 void cerberus_person_verify_init(CerberusPersonVerify* self) {
   gst_video_info_init(&self->priv->state.info);
   gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
@@ -479,6 +495,7 @@ void cerberus_person_verify_class_init(CerberusPersonVerifyClass* klass) {
   transform->start = cerberus_person_verify_start;
   transform->stop = cerberus_person_verify_stop;
   transform->set_caps = cerberus_person_verify_set_caps;
+  transform->query = cerberus_person_verify_query;
   transform->sink_event = cerberus_person_verify_sink_event;
   transform->transform_ip = cerberus_person_verify_transform_ip;
 }

@@ -34,8 +34,8 @@ using namespace cerberus::bench;
 
 namespace {
 
-// Seen: .40, .67 and .36; 52 identities a minute. A change that costs more than this is no accident.
-constexpr double kMota = .37, kIdf1 = .65, kRecall = .34, kIdentities = 60;
+// Seen: .51, .69 and .33; 12 identities a minute. A change that costs more than this is no accident.
+constexpr double kMota = .48, kIdf1 = .66, kRecall = .31, kIdentities = 16;
 constexpr double kCalm = .8;  // share of the corners; see SceneCalm
 
 struct Options {
