@@ -612,49 +612,6 @@ START_TEST(in_clutter_ghosts_are_not_searched) {
 }
 END_TEST
 
-START_TEST(an_object_whose_ghost_was_found_stays_an_object_where_it_stops) {
-  // Its outline is weak evidence there, and another person, in the picture from the start, walks nearby.
-  constexpr Rect kOther{220, 80, 30, 80};
-  // A component without an object's outline at its first motion may be a fragment of the ghost. The ghost lies 40 pixels
-  // away; what counts is the larger height of the two, 80. The last one lies 80 pixels away: too far.
-  constexpr Rect kLow{100, 80, 30, 30}, kFar{60, 80, 30, 80};
-  struct Case {
-    Rect ghost;
-    bool place_found, clear, kept;
-  };
-  for (const auto& [ghost, place_found, clear, kept] : {Case{kPerson, true, true, true},
-                                                        {kPerson, false, true, false},
-                                                        {kPerson, true, false, false},
-                                                        {kLow, true, true, true},
-                                                        {kFar, true, true, false}}) {
-    Scene s(255);
-    s.classify();
-    if (clear)
-      Scene::paint(s.frame, kWalker, 200);
-    else
-      half_and_half(s, kWalker);
-    s.differs(kWalker, 0);
-    if (place_found) {
-      Scene::paint(s.background, ghost, 200);
-      s.differs(ghost, 10);
-    }
-    s.classify();
-    ck_assert_int_eq(count(s.absorb, ghost), place_found ? all(ghost) : 0);
-    s.mask.fill_bytes(0);
-    s.differs(kWalker, 0);
-    s.differs(kOther, 0);
-    s.classify();
-    s.mask.fill_bytes(0);
-    Scene::paint(s.frame, kWalker, 100);
-    half_and_half(s, kWalker);
-    s.differs(kWalker, 10);
-    s.differs(kOther, 0);
-    s.classify();
-    ck_assert_int_eq(count(s.mask, kWalker), kept ? all(kWalker) : 0);
-  }
-}
-END_TEST
-
 int main() {
   return cerberus::tests::run_suite(
       "components", {windows_are_times_not_frames,
@@ -686,6 +643,5 @@ int main() {
                      a_tiny_component_is_dropped_over_a_young_background,
                      a_small_component_beside_a_leaving_object_is_a_fragment_of_its_ghost,
                      a_fragment_of_a_ghost_is_absorbed,
-                     in_clutter_ghosts_are_not_searched,
-                     an_object_whose_ghost_was_found_stays_an_object_where_it_stops});
+                     in_clutter_ghosts_are_not_searched});
 }

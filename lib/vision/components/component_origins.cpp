@@ -33,12 +33,11 @@ void ComponentOrigins::add_overlap(const Run& run, Overlap& overlap) const {
 }
 
 void ComponentOrigins::record(const Run& run, Origin origin) {
+  if (origin == Origin::outside) return;
   const std::uint64_t* differed = differed_.view().row(run.row);
   std::uint64_t* inside = inside_.view().row(run.row);
-  for_words(run.first, run.end, [&](int word, std::uint64_t ones) {
-    if (origin == Origin::resolved) inside[word] &= ~ones;
-    if (origin == Origin::inside) inside[word] |= ones & ~differed[word];
-  });
+  for_words(run.first, run.end,
+            [&](int word, std::uint64_t ones) { inside[word] |= ones & ~differed[word]; });
 }
 
 void ComponentOrigins::step(BitView differs, BitView gone) {

@@ -24,9 +24,8 @@ class ComponentOrigins {
   };
   void add_overlap(const Run& run, Overlap& overlap) const;
 
-  // The origin of a run's component: its new pixels take it over. resolved: where all of it began has been found, and
-  // the mark `inside` is removed.
-  enum class Origin { outside, inside, resolved };
+  // The origin of a run's component: its new pixels take it over.
+  enum class Origin { outside, inside };
   void record(const Run& run, Origin origin);
   // Ends the frame. differs: all recorded pixels; gone: those that do not differ any more from now on.
   void step(BitView differs, BitView gone);

@@ -26,8 +26,8 @@ constexpr struct Parameters {
   double contrast_ratio = 1.3;               // times as much contrast in one of frame and background, and
   double contrast_margin = 2;                // grey levels a pixel more, for the outline to decide
   double empty_ratio = 2, empty_margin = 4;  // the same where the outline is certainly the background's
-  // Times as many outline pixels are edges of the frame only as of the background only: an object, and a certain one.
-  double clear = 2, certain = 5;
+  double certain =
+      5;  // times as many outline pixels are edges of the frame only as of the background only: an object
   double certain_share = 0.1;      // of the outline that is an edge of the frame only, of a certain object
   double least_ghost = 1 / 8.0;    // of an object's area that its ghost has, and the other way round
   double least_area = 1 / 1280.0;  // of the picture: the outline of a smaller component is no evidence
@@ -202,29 +202,6 @@ void ForegroundComponents::find_ghosts() {
   }
 }
 
-// A moving object whose ghost was found came from there, and stays an object wherever it stops. The outline must be
-// clear: a fragment of a ghost beside another fragment has no clear one.
-void ForegroundComponents::resolve_origins() {
-  const Parameters& p = kParameters;
-  const auto components = labeller_.components();
-  for (std::size_t i = 0; i < components.size(); ++i) {
-    Evidence& evidence = evidence_[i];
-    if (evidence.origin != ComponentOrigins::Origin::inside || !evidence.moved_recently || !evidence.moving ||
-        evidence.ghost)
-      continue;
-    if (!evidence.object || evidence.frame_only < p.clear * evidence.background_only) continue;
-    const Component& a = components[i];
-    for (std::size_t j = 0; j < components.size(); ++j) {
-      const Component& b = components[j];
-      if (evidence_[j].kept || !evidence_[j].ghost) continue;
-      if (b.area >= p.least_ghost * a.area && are_within(std::max(a.height(), b.height()), a, b)) {
-        evidence.origin = ComponentOrigins::Origin::resolved;
-        break;
-      }
-    }
-  }
-}
-
 bool ForegroundComponents::classify(const ComponentInput& input, const FrameWindows& windows,
                                     MutableBitView mask, MutableBitView absorb) {
   labeller_.find(mask, input.frame.width);
@@ -236,10 +213,7 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
   if (input.is_aligned() && input.mechanisms.sides_go_on) doubt_edges(input, mask);
   if (input.mechanisms.flashes && input.still) remove_flashes(input, windows, mask);
   if (input.still) {
-    if (components.size() <= kParameters.most_components) {
-      if (input.mechanisms.find_ghosts) find_ghosts();
-      if (input.mechanisms.resolve_origins) resolve_origins();
-    }
+    if (input.mechanisms.find_ghosts && components.size() <= kParameters.most_components) find_ghosts();
     for (const Run& r : labeller_.runs()) origins_.record(r, evidence_[r.component].origin);
   }
   bool young_objects = false;

@@ -42,7 +42,6 @@ struct ComponentMechanisms {
   bool sides_go_on = true;       // component_sides.h
   bool origins = true;           // component_origins.h
   bool find_ghosts = true;       // by components of the same origin
-  bool resolve_origins = true;   // of objects whose ghost was found
   bool resting_ghosts = true;    // resting_ghosts.h
   bool merge_neighbours = true;  // of a young background
 };
@@ -108,7 +107,6 @@ class ForegroundComponents {
   void remove_flashes(const ComponentInput& input, const FrameWindows& windows, BitView mask);
   void doubt_edges(const ComponentInput& input, BitView mask);
   void find_ghosts();
-  void resolve_origins();
   void absorb_rest(const ComponentInput& input, const FrameWindows& windows, MutableBitView absorb) const;
 
   Labeller labeller_;
