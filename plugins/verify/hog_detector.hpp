@@ -17,8 +17,10 @@ enum class HogWeights {
 
 // How the picture is scanned.
 struct HogScan {
-  double threshold = 0;      // score of the SVM, below which a window is no hit
-  double scale_step = 1.07;  // from one scale of the pyramid to the next
+  double threshold = 0;  // score of the SVM, below which a window is no hit
+  // From one scale of the pyramid to the next. swept: bench-persons, mean average precision with 1.05, 1.07 and 1.1 of hog
+  // .632, .605 and .602 at 73, 52 and 37 ms a look, of Daimler .620 and .632 with the first two at 61 and 45 ms.
+  double scale_step = 1.07;
   // Pixels around the picture that windows reach, a multiple of 8: a window is wider and higher than the person in it.
   int padding = 16;
   // Of the picture beyond the scale that is asked for, which suits a body as high as Daimler's.
