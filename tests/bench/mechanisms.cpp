@@ -105,6 +105,7 @@ const std::vector<Mechanism> kMechanisms{
      {"tracking/appearance_model.*", "tracking/region_appearances.*"},
      17,
      {"appearance.least_samples=1000000"}},
+    {"appearance_in_groups", {"tracking/region_appearances.cpp find"}, 8, {"search.familiar=-1"}},
     {"appearance_cost",
      {"tracking/data_association.cpp appearance_cost"},
      6,

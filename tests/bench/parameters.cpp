@@ -181,6 +181,8 @@ void name(Numbers n, TrackParameters& p) {
          N(freeze),
          N(relearn),
          N(changed),
+         N(found_noise),
+         N(found_brake),
          N(apart),
          N(different),
          N(crossing)});
@@ -210,7 +212,8 @@ void name(Numbers n, DataAssociation::Parameters& p) {
 }
 
 void name(Numbers n, RegionAppearances::Parameters& p) {
-  n.add({D(samples), D(rough_samples)});
+  n.add({D(samples), D(rough_samples), N(familiar), N(reach), N(reach_up), N(columns), N(displacement),
+         N(least_reach), N(steps), N(inside)});
 }
 
 void name(Numbers n, AppearanceParameters& p) {

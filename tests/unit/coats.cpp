@@ -28,6 +28,10 @@ bool turn_back(Place& place, Person a, Person b, double dimmed = 1) {
     if (k == 27) place.gain = dimmed;
     place.step({a, b});
     if (k == 15) left = place.at(a.x), right = place.at(b.x);
+    // Each is found in the blob where he stands.
+    if (k >= 30 && k < 40)
+      for (const Track& t : place.tracks)
+        ck_assert_double_eq_tol(t.box.x + t.box.width / 2, t.id == left ? a.x : b.x, 8);
   }
   ck_assert_uint_ne(left, 0);
   ck_assert_uint_ne(right, 0);

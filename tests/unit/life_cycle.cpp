@@ -375,11 +375,11 @@ START_TEST(tracks_in_view_are_published_while_their_place_is_certain) {
   ck_assert(!published(piece, as_it_is));
   ck_assert(published(piece, as_it_is, true));
   for (const TrackLife& life : {TrackLife(Confirmed{}), TrackLife(Coasted{}), TrackLife(Stopped{})}) {
-    const auto shared = [&](bool occluded, double shared_for) {
+    const auto shared = [&](bool occluded, double unlocated) {
       return published(track(life),
                        [&](TrackHypothesis& t) {
                          t.match.occluded = occluded;
-                         t.shared.time = shared_for;
+                         t.shared.unlocated = unlocated;
                        })
           .has_value();
     };

@@ -362,7 +362,7 @@ START_TEST(after_a_leap_the_velocity_is_that_of_the_leap) {
     t.predict(0.04);
     region.box.x += 75;
     t.match.leapt = leapt;
-    t.correct(region, true, 0.04, kFrame);
+    t.correct(region, true, 0.04, kFrame, {});
     ck_assert_int_eq(t.x.velocity > 0.95 * 75 / 0.04, leapt);
     ck_assert_double_le(t.x.velocity, 1.05 * 75 / 0.04);
     ck_assert_double_eq_tol(t.y.velocity, 0, 1e-9);

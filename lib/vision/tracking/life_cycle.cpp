@@ -239,7 +239,7 @@ bool LifeCycle::are_duplicates(const TrackHypothesis& a, const TrackHypothesis& 
   if (intersection_over_union(a.box(), b.box()) < q.duplicate) return false;
   const bool different = look_different(a, b);
   if (a.match.region == b.match.region && a.match.region >= 0) {
-    if (different && std::max(a.shared.time, b.shared.time) < a.parameters->crossing) return false;
+    if (different && std::max(a.shared.unlocated, b.shared.unlocated) < a.parameters->crossing) return false;
     return std::max(a.shared.time, b.shared.time) >=
            (went_apart(a, b) ? a.parameters->crossing : q.duplicate_shared);
   }
@@ -261,10 +261,10 @@ void LifeCycle::end_duplicates(std::span<TrackHypothesis> tracks) const {
 
 std::optional<TrackState> LifeCycle::published(const TrackHypothesis& t) const {
   const Parameters& q = parameters_;
-  if (t.match.occluded && t.shared.time > q.occluded_coast) return {};
+  if (t.match.occluded && t.shared.unlocated > q.occluded_coast) return {};
   if (is_sliver(t)) return {};
   if (t.is(TrackPhase::confirmed)) return TrackState::seen;
-  if (!t.in_view() || t.shared.time >= t.parameters->crossing) return {};
+  if (!t.in_view() || t.shared.unlocated >= t.parameters->crossing) return {};
   if (t.is(TrackPhase::stopped)) return TrackState::stopped;
   // A coasted track: while its position is certain; away from the picture's edge, where it probably has left; if it was
   // seen for long enough not to be noise; and if it is not a piece of a person, who may have left it behind.

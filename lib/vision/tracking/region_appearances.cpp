@@ -39,4 +39,32 @@ void RegionAppearances::recompute(std::size_t region, const Box& box) {
   if (input_.known()) appearances_[region] = appearance_of(input_, box, parameters_.samples);
 }
 
+std::optional<Point> RegionAppearances::find(const TrackHypothesis& track, const Box& region) const {
+  if (!input_.known() || !track.has_appearance()) return std::nullopt;
+  const Parameters& q = parameters_;
+  const Box box = track.box();
+  const double s = track.size(), reach_up = q.reach_up * s;
+  const double reach = std::min(q.reach * s, 2 * std::sqrt(track.x.pp) + q.least_reach * s);
+  const double pixel = static_cast<double>(frame_.width) / input_.luma.width;
+  const double step = std::max(box.width / q.steps, pixel), step_up = std::max(reach_up, pixel);
+  const int columns = std::min(static_cast<int>(reach / step), q.columns),
+            rows = static_cast<int>(reach_up / step_up);
+  std::optional<Point> found;
+  double least = q.familiar;
+  for (int j = -rows; j <= rows; ++j)
+    for (int i = -columns; i <= columns; ++i) {
+      const Box there{box.x + i * step, box.y + j * step_up, box.width, box.height};
+      if (overlap_area(there, region) < q.inside * there.area()) continue;
+      const double difference =
+          appearance_distance(track.appearance.model, appearance_of(input_, there, q.rough_samples));
+      if (difference < 0) continue;
+      const double x = i * step / reach, y = j * step_up / reach_up;
+      const double cost = difference + q.displacement * (x * x + 2 * y * y);
+      if (cost >= least) continue;
+      least = cost;
+      found = Point{i * step, j * step_up};
+    }
+  return found;
+}
+
 }  // namespace cerberus::vision

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Appearance of the regions of a frame.
+// Appearance of the regions of a frame, and the position of a known appearance within a region of several objects.
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "vision/detection/region.h"
 #include "vision/tracking/appearance_model.h"
+#include "vision/tracking/track_hypothesis.h"
 
 namespace cerberus::vision {
 
@@ -15,8 +16,16 @@ class RegionAppearances {
  public:
   // Where no origin stands the value was chosen by hand. Guard: tests/unit/coats and MOTA 70 on PETS09-S2L1.
   struct Parameters {
-    int samples = 500;        // pixels that are read of a region
-    int rough_samples = 120;  // and of a track's whole box
+    int samples = 500;           // pixels that are read of a region
+    int rough_samples = 120;     // and of each candidate position in a group
+    double familiar = 0.35;      // the most that appearance distance and displacement cost together
+    double reach = 0.5;          // S to either side that is searched
+    double reach_up = 0.05;      // S up and down; small, as coats and legs are of one colour each
+    int columns = 24;            // candidate positions to either side, at most
+    double displacement = 0.05;  // cost of the farthest position to the side; twice as much up or down
+    double least_reach = 0.1;    // S, added to two standard deviations of the position
+    double steps = 6;            // candidate positions in the width of a box
+    double inside = 0.8;         // of a candidate box that lies in the region
   };
 
   RegionAppearances() = default;
@@ -38,6 +47,9 @@ class RegionAppearances {
   AppearanceModel place(const Box& box) const;
   // The input of update() is not used any more.
   void done() { input_ = {}; }
+  // Offset in frame pixels from the track's expected position to the best one by appearance in the region. Nothing:
+  // no position looks like the track.
+  std::optional<Point> find(const TrackHypothesis& track, const Box& region) const;
   std::size_t bytes() const { return appearances_.capacity() * sizeof(AppearanceModel); }
 
  private:

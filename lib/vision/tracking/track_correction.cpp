@@ -15,7 +15,8 @@ Point centre(const Box& b) {
 
 }  // namespace
 
-void TrackHypothesis::correct(const Region& region, bool alone, double seconds, Size frame) {
+void TrackHypothesis::correct(const Region& region, bool alone, double seconds, Size frame,
+                              const std::optional<Point>& found) {
   const Box& seen = region.box;
   const Comparison how = compare(seen, alone && region.kind != RegionKind::group, frame);
   const double before = size();
@@ -23,6 +24,8 @@ void TrackHypothesis::correct(const Region& region, bool alone, double seconds, 
                   (how.cut_y && seen.height < parameters->leaving * uncut.height);
   if (!how.fits && alone && outgrown(region, how.cut(), seconds)) {
     replace_extent(seen, how.cut());
+  } else if (found) {
+    move_to(*found, seconds);
   } else {
     move_by(how, seconds, frame);
     if (alone && how.fits)
@@ -152,6 +155,14 @@ void TrackHypothesis::replace_extent(const Box& seen, bool cut) {
   if (!is(TrackPhase::tentative) || cut) return;
   travel.origin = {x.position - (was.x - travel.origin.x) * size() / before,
                    y.position - (was.y - travel.origin.y) * size() / before};
+}
+
+// To the place in a group where the object was found by its appearance, which determines height poorly.
+void TrackHypothesis::move_to(const Point& found, double seconds) {
+  const double variance = square(parameters->found_noise * size());
+  x.correct(found.x, variance);
+  y.correct(found.y, variance);
+  y.velocity *= std::exp(-seconds / parameters->found_brake);
 }
 
 // By the residual. A smaller region within the expected box is no distance travelled of a tentative track.

@@ -107,7 +107,8 @@ struct TrackHypothesis {
   };
   // Regions of several objects.
   struct Shared {
-    double time = 0;  // s that it has shared a region
+    double time = 0;       // s that it has shared a region
+    double unlocated = 0;  // s in shared regions without being located there
   };
   struct Appearance {
     AppearanceModel model;       // learnt while the object is alone
@@ -191,8 +192,10 @@ struct TrackHypothesis {
   // Cost of a region: 0 fits perfectly; negative: outside the validation gate.
   double distance(const Box& seen, Size frame) const;
 
-  // Seen in this region. alone: no other track has it.
-  void correct(const Region& region, bool alone, double seconds, Size frame);
+  // Seen in this region. alone: no other track has it. found: offset of the best position by appearance from the
+  // expected one, in a region of several.
+  void correct(const Region& region, bool alone, double seconds, Size frame,
+               const std::optional<Point>& found = {});
   // The region's extent and place replace the track's.
   void adopt(const Box& seen);
   // Not seen: it slows down.
@@ -233,6 +236,7 @@ struct TrackHypothesis {
   bool outgrown(const Region& region, bool cut, double seconds);
   bool jumps(const Box& seen, double seconds) const;
   void replace_extent(const Box& seen, bool cut);
+  void move_to(const Point& found, double seconds);
   void move_by(const Comparison& how, double seconds, Size frame);
   void refine_extent(const Box& seen, const Comparison& how, double seconds, Size frame);
   void resize(SlowValue& extent, double seen, bool is_cut, double seconds);

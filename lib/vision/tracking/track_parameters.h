@@ -111,6 +111,10 @@ struct TrackParameters {
   double relearn = 4.0;          // s after contact after which a changed appearance is learnt all the same
   double changed = 0.3;  // appearance distance beyond which the recent appearance may be another object's
 
+  // Position of a track within a group by its appearance.
+  double found_noise = 0.1;  // S, standard deviation of that position
+  double found_brake = 0.5;  // s, time constant of the vertical velocity: appearance determines height poorly
+
   // Two tracks are two objects.
   double apart = 0.3;  // S that they have come apart at least
   // Appearance distance. measured: between .28 (the same person, one of ten) and .36 (two persons, median), lower as both

@@ -137,11 +137,14 @@ void Tracker::State::correct(TrackHypothesis& t) {
   const bool alone =
       t.match.sharers == 1 && !t.match.occluded && !association.others_expected(tracks, t, region.box, frame);
   if (t.is(TrackPhase::off_screen)) LifeCycle::come_back(t, region.box);
-  t.correct(region, alone, seconds, frame);
+  const bool in_blob = !alone && association.is_larger(region.box, t.box());
+  const auto found = in_blob ? appearances.find(t, region.box) : std::nullopt;
+  t.correct(region, alone, seconds, frame, found);
   if (t.in_view()) LifeCycle::see(t);
   const bool fits = alone && t.fit.misfit == 0;
   t.learn_place(fits && t.slow > 0 ? appearances.place(t.box()) : AppearanceModel{}, seconds);
   learn_standing(t, fits);
+  t.shared.unlocated = alone || found ? 0 : t.shared.unlocated + seconds;
   t.shared.time = alone ? 0 : t.shared.time + seconds;
   if (fits && appearances.of(j).known())
     t.remember(appearances.of(j), seconds, !association.crowded(tracks, t, region.box));
