@@ -185,7 +185,10 @@ void Detector::track(Analysis& record, const DetectorFrame& frame, std::span<con
     calm_.reset();
     own_motion_.reset();
   } else if (record.camera) {
-    calm_.add(record.camera->corners, tracked_, frame.size, frame.seconds);
+    if (frame.motion.still)
+      calm_.add_still(frame.seconds);
+    else
+      calm_.add(record.camera->corners, tracked_, frame.size, frame.seconds);
     record.camera.stored().calm = calm_.share();
   }
   own_motion_.begin_frame(record.differences ? GrayView(record.differences->current->view()) : GrayView{},

@@ -92,9 +92,21 @@ START_TEST(few_corners_say_nothing) {
 }
 END_TEST
 
+START_TEST(a_camera_that_stands_is_calm_whatever_noise_does_to_its_corners) {
+  SceneCalm calm;
+  calm.add(corners(20, 0), {}, kSize, 0.1);
+  ck_assert_double_eq_tol(calm.share(), 0, 1e-9);
+  calm.add_still(0.1);
+  ck_assert_double_eq_tol(calm.share(), 0.5, 1e-9);
+  for (int i = 0; i < 50; ++i) calm.add_still(0.1);
+  ck_assert_double_gt(calm.share(), 0.98);
+}
+END_TEST
+
 int main() {
-  return run_suite("scene_calm", {a_scene_that_only_the_camera_moves_is_calm,
-                                  a_scene_whose_near_half_moves_by_parallax_is_not,
-                                  what_is_within_a_track_says_nothing_of_the_scene,
-                                  the_share_is_the_mean_of_a_second, few_corners_say_nothing});
+  return run_suite(
+      "scene_calm",
+      {a_scene_that_only_the_camera_moves_is_calm, a_scene_whose_near_half_moves_by_parallax_is_not,
+       what_is_within_a_track_says_nothing_of_the_scene, the_share_is_the_mean_of_a_second,
+       few_corners_say_nothing, a_camera_that_stands_is_calm_whatever_noise_does_to_its_corners});
 }

@@ -27,7 +27,6 @@ bool touches(Point corner, double reach, std::span<const Box> boxes) {
 }  // namespace
 
 void SceneCalm::add(const SceneCorners& corners, std::span<const Box> objects, Size frame, double seconds) {
-  if (seconds > 0 && std::isfinite(seconds)) step_ = seconds;
   int count = 0, fitting = 0;
   for (const SceneCorners::Corner& c :
        std::span(corners.corner).first(static_cast<std::size_t>(corners.count))) {
@@ -36,9 +35,13 @@ void SceneCalm::add(const SceneCorners& corners, std::span<const Box> objects, S
     ++count;
     fitting += c.fits;
   }
-  if (count < kParameters.least) return;
+  if (count >= kParameters.least) follow(static_cast<double>(fitting) / count, seconds);
+}
+
+void SceneCalm::follow(double share, double seconds) {
+  if (seconds > 0 && std::isfinite(seconds)) step_ = seconds;
   measured_ = std::min(measured_ + step_, std::max(kParameters.memory, step_));
-  share_ += step_ / measured_ * (static_cast<double>(fitting) / count - share_);
+  share_ += step_ / measured_ * (share - share_);
 }
 
 }  // namespace cerberus::vision
