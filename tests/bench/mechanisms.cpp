@@ -155,7 +155,7 @@ const std::vector<Mechanism> kMechanisms{
      {"track.thing_group=1000000", "track.shared_group=1000000"}},
     {"stride", {}, 1, {"track.stride=0"}},
     {"jumps", {"tracking/track_correction.cpp jumps"}, 3, {"track.jump=1000000"}},
-    {"known_place", {"tracking/track_hypothesis.cpp stays"}, 2, {"track.same_place=-1"}},
+    {"known_place", {"tracking/track_hypothesis.cpp stays"}, 1, {"track.settled=1000000"}},
     {"growth",
      {"tracking/track_correction.cpp follow_ends", "tracking/track_hypothesis.cpp approach",
       "tracking/track_hypothesis.cpp stretch"},

@@ -174,7 +174,6 @@ void name(Numbers n, TrackParameters& p) {
          N(fragment_walk),
          N(stand_speed),
          N(settled),
-         N(same_place),
          N(appearance_time),
          N(appearance_frames),
          N(recent_time),

@@ -172,40 +172,34 @@ START_TEST(a_track_behind_another_one_does_not_stop) {
 }
 END_TEST
 
-START_TEST(a_track_does_not_stop_at_the_edge_where_its_place_looks_otherwise) {
-  const auto changed = [](double x, double slow, double change) {
-    return after(standing(x), [&](TrackHypothesis& t) {
-      t.slow = slow;
-      t.appearance.place_change = change;
-    });
-  };
-  ck_assert(changed(5, 1, 0.16) == TrackPhase::coasted);
-  ck_assert(changed(5, 1, 0.14) == TrackPhase::stopped);    // less than .15: as before
-  ck_assert(changed(5, 0.9, 0.14) == TrackPhase::coasted);  // has not stood for long enough to tell
-  ck_assert(changed(5, 0.9, -1) == TrackPhase::stopped);    // nothing to compare with
-  ck_assert(changed(300, 1, 0.16) == TrackPhase::stopped);  // no way out
+START_TEST(a_track_does_not_stop_where_its_place_looks_as_before_it_came) {
+  for (const double x : {5.0, 300.0})
+    for (const bool left : {false, true})
+      ck_assert(after(standing(x), [left](TrackHypothesis& t) { t.left = left; }) ==
+                (left ? TrackPhase::coasted : TrackPhase::stopped));
 }
 END_TEST
 
-START_TEST(a_stopped_track_is_lost_after_hold_stopped_or_where_it_has_left_by_the_edge) {
-  const auto stopped = [](double x, double before, double absent, double change) {
+START_TEST(a_stopped_track_is_lost_after_hold_stopped_or_where_it_has_left_its_place) {
+  const auto stopped = [](double x, double before, double absent, bool left) {
     return after(track_at(x, 190, Stopped{absent}), [&](TrackHypothesis& t) {
       t.age = 50;
       t.unseen = before;
-      t.appearance.place_change = change;
+      t.left = left;
     });
   };
-  ck_assert(stopped(300, 29.95, 0, 0.1) == TrackPhase::stopped);
-  ck_assert(stopped(300, 29.97, 0, 0.1) == TrackPhase::lost);
-  ck_assert(stopped(5, 1, 0.25, 0.2) == TrackPhase::stopped);  // .29 s of .3 x 1 s
-  ck_assert(stopped(5, 1, 0.27, 0.2) == TrackPhase::lost);
-  ck_assert(stopped(5, 1, 0.27, 0.1) == TrackPhase::stopped);
-  ck_assert(stopped(300, 1, 0.27, 0.2) == TrackPhase::stopped);
-  ck_assert(stopped(-21, 1, 0, -1) == TrackPhase::lost);
+  ck_assert(stopped(300, 29.95, 0, false) == TrackPhase::stopped);
+  ck_assert(stopped(300, 29.97, 0, false) == TrackPhase::lost);
+  for (const double x : {5.0, 300.0}) {
+    ck_assert(stopped(x, 1, 0.25, true) == TrackPhase::stopped);  // .29 s of .3 x 1 s
+    ck_assert(stopped(x, 1, 0.27, true) == TrackPhase::lost);
+    ck_assert(stopped(x, 1, 0.27, false) == TrackPhase::stopped);
+  }
+  ck_assert(stopped(-21, 1, 0, false) == TrackPhase::lost);
   TrackHypothesis other = track_at(5, 190, Confirmed{});
   other.match.region = 0;
   TrackHypothesis behind = track_at(5, 190, Stopped{0.27});
-  behind.appearance.place_change = 0.2;
+  behind.left = true;
   ck_assert(after(std::vector{behind, other}) == TrackPhase::stopped);
 }
 END_TEST
@@ -470,8 +464,8 @@ int main() {
        a_tentative_track_is_lost_that_mostly_had_no_region_and_has_none_for_long,
        a_track_without_region_is_coasted_and_lost_after_its_time,
        a_track_stops_that_came_and_stood_before_it_had_no_region, a_track_behind_another_one_does_not_stop,
-       a_track_does_not_stop_at_the_edge_where_its_place_looks_otherwise,
-       a_stopped_track_is_lost_after_hold_stopped_or_where_it_has_left_by_the_edge,
+       a_track_does_not_stop_where_its_place_looks_as_before_it_came,
+       a_stopped_track_is_lost_after_hold_stopped_or_where_it_has_left_its_place,
        a_known_object_from_which_the_camera_turns_away_is_off_screen,
        a_known_object_that_walks_out_of_the_picture_of_a_head_is_off_screen,
        a_track_that_leaves_keeps_its_direction_and_what_was_not_cut,

@@ -14,6 +14,7 @@
 namespace cerberus::tests {
 
 using vision::Box;
+using vision::GrayView;
 using vision::Image;
 using vision::Region;
 using vision::Sight;
@@ -36,7 +37,7 @@ constexpr int kBlack = 20, kJeans = 80, kGrey = 100, kWhite = 220;
 // 10 frames a second of people on a paved place. People who touch are one blob.
 struct Place {
   Tracker tracker;
-  Image<std::uint8_t> luma{kFrame}, mask{kFrame};
+  Image<std::uint8_t> luma{kFrame}, mask{kFrame}, background{kFrame};
   double gain = 1;
   double shift = 0;     // of the camera, so far
   bool looking = true;  // the tracker is given the picture
@@ -51,6 +52,8 @@ struct Place {
         const int slab = (static_cast<int>(std::floor((x - shift) / 24)) + y / 24) & 1;
         paint(x, y, 130 + 30 * slab);
       }
+    for (int y = 0; y < kFrame.height; ++y)
+      std::copy_n(luma.view().row(y), kFrame.width, background.view().row(y));
     mask.fill_bytes(0);
     for (auto p = people.rbegin(); p != people.rend(); ++p) {
       const Box b = p->box();
@@ -61,7 +64,9 @@ struct Place {
         }
     }
     const std::vector<Region> regions = given ? *given : blobs(people);
-    const Sight sight = looking ? Sight{luma.view(), mask.view()} : Sight{};
+    const Sight sight =
+        looking ? Sight{luma.view(), mask.view(), pan == 0 ? GrayView(background.view()) : GrayView{}}
+                : Sight{};
     const auto found = tracker.update(regions, pan != 0 ? Transform::translation(pan, 0) : Transform{}, 0.1,
                                       kFrame, {}, sight);
     tracks.assign(found.begin(), found.end());

@@ -132,12 +132,11 @@ void LifeCycle::advance_coasted(TrackHypothesis& t) {
   if (outside(t) || t.unseen > longest) depart(t);
 }
 
-// Departs after hold-stopped; sooner from a place that looks as before the object came, or, at the picture's edge, otherwise
-// than with it, for a while, and is not covered: then the object has left.
+// Departs after hold-stopped; sooner from a place that looks for a while as before the object came, and is not covered.
 void LifeCycle::advance_stopped(TrackHypothesis& t) {
   fade(t, options_.hold_stopped);
   double& absent = std::get<Stopped>(t.life).absent;
-  absent = left_place(t) && !covered(t) ? absent + frame_.seconds : 0;
+  absent = t.left && !covered(t) ? absent + frame_.seconds : 0;
   if (outside(t) || t.unseen > options_.hold_stopped || absent > parameters_.border_coast * coast_time(t))
     depart(t);
 }
@@ -172,19 +171,14 @@ void LifeCycle::depart(TrackHypothesis& t) {
 
 // Has the object ceased to move, rather than left or gone behind another one? It was well seen before, slower and
 // slower until nothing moved any more, uncovered, and is not a remnant of itself; its place must not look as before the
-// object came, and at the picture's edge as with it.
+// object came.
 bool LifeCycle::has_stopped(const TrackHypothesis& t) const {
   const Parameters& q = parameters_;
   if (t.slow < q.still || t.fit.time < q.fitted || t.travel.most < q.stop_travel || t.seen_for() < q.seen ||
       t.uncut.leaving)
     return false;
   const bool remnant = t.box().area() < q.remnant * t.uncut.width * t.uncut.height;
-  return !remnant && !left_place(t) && !covered(t);
-}
-
-// Does its place look as before it came, or is it at the picture's edge, and its place looks otherwise?
-bool LifeCycle::left_place(const TrackHypothesis& t) const {
-  return t.appearance.left || (t.appearance.place_change >= 0 && !t.stays() && t.at_border(frame_.size));
+  return !remnant && !t.left && !covered(t);
 }
 
 // Does another track, one with a region, lie in front of it?

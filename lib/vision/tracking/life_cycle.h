@@ -112,7 +112,6 @@ class LifeCycle {
   void depart(TrackHypothesis& track);
   bool is_confirmed(const TrackHypothesis& track) const;
   bool has_stopped(const TrackHypothesis& track) const;
-  bool left_place(const TrackHypothesis& track) const;
   bool covered(const TrackHypothesis& track) const;
   bool outside(const TrackHypothesis& track) const;
   bool is_sliver(const TrackHypothesis& track) const;

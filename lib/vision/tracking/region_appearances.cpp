@@ -16,11 +16,6 @@ AppearanceModel RegionAppearances::appearance_of(const Sight& input, const Box& 
   return vision::appearance_of(input, level_, in_sight(box), samples);
 }
 
-AppearanceModel RegionAppearances::place(const Box& box) const {
-  return input_.known() ? appearance_of({input_.luma, {}}, box, parameters_.rough_samples)
-                        : AppearanceModel{};
-}
-
 void RegionAppearances::update(const Sight& input, std::span<const Region> regions, const Transform& motion,
                                Size frame) {
   input_ = input;

@@ -43,8 +43,6 @@ class RegionAppearances {
   const Sight& sight() const { return input_; }
   // From frame pixels to those of the sight.
   Box in_sight(const Box& box) const;
-  // Of the whole box, foreground or not.
-  AppearanceModel place(const Box& box) const;
   // The input of update() is not used any more.
   void done() { input_ = {}; }
   // Offset in frame pixels from the track's expected position to the best one by appearance in the region. Nothing:

@@ -254,15 +254,7 @@ void TrackHypothesis::miss(double seconds) {
 }
 
 bool TrackHypothesis::stays() const {
-  return (stands() || slow >= parameters->settled) && appearance.place_change >= 0 &&
-         appearance.place_change < parameters->same_place;
-}
-
-void TrackHypothesis::learn_place(const AppearanceModel& all, double seconds) {
-  if (slow == 0)
-    appearance.place = {};
-  else
-    appearance.place.learn(all, 1 - std::exp(-seconds / parameters->appearance_time));
+  return (stands() || slow >= parameters->settled) && there;
 }
 
 bool TrackHypothesis::has_appearance() const {

@@ -118,10 +118,6 @@ struct TrackHypothesis {
     AppearanceModel recent;      // since the last contact with another track
     int recent_frames = 0;       // in which that was learnt
     double since_contact = 1e9;  // s
-    AppearanceModel place;       // of the whole box since the object stands, moving pixels or not
-    double place_change = -1;    // appearance distance of the box to `place` in this frame; negative: unknown
-    StandingPlace standing;
-    bool left = false;  // its place looks as before it came, in this frame
   };
 
   const TrackParameters* parameters = &kTrackParameters;
@@ -142,6 +138,9 @@ struct TrackHypothesis {
   Fit fit;
   Shared shared;
   Appearance appearance;
+  StandingPlace standing;
+  bool there = false;         // it is known to be where it stood, in this frame, before a camera that stands,
+  bool left = false;          // or to have left from there: the place looks as before it came
   Match match;                // of this frame
   bool camera_moved = false;  // since the frame before
 
@@ -201,12 +200,10 @@ struct TrackHypothesis {
   // Not seen: it slows down.
   void miss(double seconds);
 
-  // The object stood and its place looks as it did: it is still there, whatever moves.
+  // The object stood, and its place still differs from what was there before: it is there, whatever moves.
   bool stays() const;
   // Learns the appearance of a region of its own extent. isolated: no other track covers a part of the region.
   void remember(const AppearanceModel& seen, double seconds, bool isolated);
-  // Learns what the whole box looks like; after correct(), for a track that is alone there.
-  void learn_place(const AppearanceModel& all, double seconds);
   // Contact: another track shares the region, or covers a part of it.
   void touch();
   // Returns whether the appearance model distinguishes the object from others.

@@ -101,7 +101,6 @@ struct TrackParameters {
   // Standing.
   double stand_speed = 0.3;  // S/s. derived: 0.5 m/s
   double settled = 1.0;      // s of standing from which on the place is compared
-  double same_place = 0.15;  // appearance distance. derived: noise, folds and arms change as many pixels
 
   // Appearance model.
   double appearance_time = 2.0;  // s, time constant. derived: a person turns round within it

@@ -103,17 +103,14 @@ void Tracker::State::predict(const Transform& motion) {
   }
   remove_lost();
   for (TrackHypothesis& t : tracks) {
-    AppearanceModel& place = t.appearance.place;
-    if (turning) place = {};  // the background around the object is another one now
-    t.appearance.place_change =
-        t.in_view() && place.known() ? appearance_distance(place, appearances.place(t.box())) : -1;
-    StandingPlace& standing = t.appearance.standing;
-    if (turning && appearances.sight().known())
-      standing.carry(motion.rescaled(frame, appearances.sight().luma.size()));
+    t.there = t.left = false;
     const Sight& sight = appearances.sight();
-    t.appearance.left = sight.known() && standing.known() &&
-                        (standing.holds(appearances.in_sight(t.box())) ? standing.left(sight.luma)
-                                                                       : !sight.background.empty());
+    if (!sight.known()) continue;
+    if (turning) t.standing.carry(motion.rescaled(frame, sight.luma.size()));
+    if (!t.standing.known()) continue;
+    const bool holds = t.standing.holds(appearances.in_sight(t.box()));
+    t.left = holds ? t.standing.left(sight.luma) : !sight.background.empty();
+    t.there = holds && !t.left && !turning;
   }
 }
 
@@ -142,7 +139,6 @@ void Tracker::State::correct(TrackHypothesis& t) {
   t.correct(region, alone, seconds, frame, found);
   if (t.in_view()) LifeCycle::see(t);
   const bool fits = alone && t.fit.misfit == 0;
-  t.learn_place(fits && t.slow > 0 ? appearances.place(t.box()) : AppearanceModel{}, seconds);
   learn_standing(t, fits);
   t.shared.unlocated = alone || found ? 0 : t.shared.unlocated + seconds;
   t.shared.time = alone ? 0 : t.shared.time + seconds;
@@ -156,7 +152,7 @@ void Tracker::State::correct(TrackHypothesis& t) {
 // nothing else.
 void Tracker::State::learn_standing(TrackHypothesis& t, bool fits) {
   const Sight& sight = appearances.sight();
-  StandingPlace& standing = t.appearance.standing;
+  StandingPlace& standing = t.standing;
   const Box box = appearances.in_sight(t.box());
   if (t.slow == 0 && !standing.holds(box)) standing.forget();
   if (!fits || t.slow == 0 || sight.background.empty()) return;
