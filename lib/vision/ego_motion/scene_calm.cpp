@@ -14,7 +14,8 @@ namespace {
 constexpr struct Parameters {
   int least =
       8;  // corners: fewer say nothing of a scene. derived: as many as determine a motion (PatchMatches)
-  double memory = 1;  // s. derived: two strides of a walker, or a swing of a hand that holds a camera
+  double memory =
+      1;  // s, time constant. derived: two strides of a walker, or a swing of a hand that holds a camera
 } kParameters;
 
 bool touches(Point corner, double reach, std::span<const Box> boxes) {
@@ -40,8 +41,7 @@ void SceneCalm::add(const SceneCorners& corners, std::span<const Box> objects, S
 
 void SceneCalm::follow(double share, double seconds) {
   if (seconds > 0 && std::isfinite(seconds)) step_ = seconds;
-  measured_ = std::min(measured_ + step_, std::max(kParameters.memory, step_));
-  share_ += step_ / measured_ * (share - share_);
+  share_ += std::min(1.0, step_ / kParameters.memory) * (share - share_);
 }
 
 }  // namespace cerberus::vision

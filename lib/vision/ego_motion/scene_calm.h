@@ -33,16 +33,15 @@ class SceneCalm {
   void add(const SceneCorners& corners, std::span<const Box> objects, Size frame, double seconds);
   // A frame of a camera that stands: noise may move its corners, but nothing passes it by.
   void add_still(double seconds) { follow(1, seconds); }
-  // Share of the corners outside the objects that fit, mean of about a second (of the scene, while it is younger), 0..1.
-  // Frames with few such corners do not count; 1 before the first that does: nothing speaks against the scene.
+  // Share of the corners outside the objects that fit, 0..1: running mean of about a second. A scene begins with 1, because
+  // nothing speaks against it yet; frames with few such corners do not count.
   double share() const { return share_; }
 
  private:
   void follow(double share, double seconds);
 
   double share_ = 1;
-  double measured_ = 0;  // seconds that it is the mean of
-  double step_ = 0.04;   // seconds between frames, until a distance is known
+  double step_ = 0.04;  // seconds between frames, until a distance is known
 };
 
 }  // namespace cerberus::vision
