@@ -101,17 +101,18 @@ bool boxes(const fs::path& data, const std::string& video, const Finder& finder,
   return measured;
 }
 
-// What the tracks of a sequence of people_sequences() must reach; `promised` as Asked has it.
+// What the tracks of a sequence of people_sequences() must reach; `promised` as Asked has it. Mechanisms and numbers are
+// judged by the means of bench-development: a sequence is judged here only where a promise names it.
 struct AskedOfTracks {
   const char* name;
   double mota, idf1, precision, recall;
   int switches;
   bool promised;
 };
-constexpr AskedOfTracks kTracks[] = {{"PETS09-S2L1", 0.7, 0.72, 0, 0, 28, true},
-                                     {"TUD-Campus", 0.35, 0, 0.8, 0.45, 1000, true},
-                                     {"TUD-Stadtmitte", 0.05, 0, 0.5, 0.25, 1000, true},
-                                     {"davis_tennis", 0, 0, 0.8, 0.8, 1000, true}};
+constexpr AskedOfTracks kTracks[] = {{"PETS09-S2L1", 0.72, 0.8, 0, 0, 30, true},
+                                     {"TUD-Campus", 0, 0, 0, 0, 1000, true},
+                                     {"TUD-Stadtmitte", 0, 0, 0, 0, 1000, true},
+                                     {"davis_tennis", 0.85, 0, 0.8, 0.8, 1000, true}};
 
 // As boxes(). A sequence that is not there is skipped.
 bool tracks(const fs::path& data, const std::string& video, const Finder& finder, Asked& asked) {
