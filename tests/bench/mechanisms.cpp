@@ -98,6 +98,7 @@ const std::vector<Mechanism> kMechanisms{
     {"person_box", {"detection/person_box.*"}, 0, {"box.measured=0"}},
     {"resting_columns", {"detection/person_box.cpp columns_of"}, 3, {"box.rests=0"}},
     {"rim", {}, 2, {"regions.young=0"}},
+    {"two_frame_confirmation", {"detection/two_frame_confirmation.*"}, 0, {"confirmation.frames=0"}},
     {"box_edge", {"geometry/box_edge.h"}, 0, {"edge.blur=0"}},
 
     // Tracks.

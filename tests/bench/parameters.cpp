@@ -121,6 +121,10 @@ void name(Numbers n, WalkingBodies::Parameters& p) {
   n.add({N(step_x), N(step_y), N(same_height), N(least_frames), N(stride)});
 }
 
+void name(Numbers n, TwoFrameConfirmation::Parameters& p) {
+  n.add({N(frames), N(first), N(small), N(speck), N(common), N(reach), N(slack)});
+}
+
 void name(Numbers n, TrackParameters& p) {
   n.add({N(acceleration),
          N(panned_acceleration),
@@ -256,6 +260,7 @@ std::vector<NamedNumber> named_numbers(DetectorParameters& p) {
   stage("edge", p.edge);
   stage("head", p.detection.head);
   stage("bodies", p.detection.bodies);
+  stage("confirmation", p.detection.confirmation);
   stage("track", p.tracking.track);
   stage("life", p.tracking.life);
   stage("association", p.tracking.association);

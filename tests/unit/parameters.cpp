@@ -81,6 +81,7 @@ START_TEST(every_number_of_every_stage_has_a_name_of_its_own) {
   all_are_named("edge", p.edge);
   all_are_named("head", d.head);
   all_are_named("bodies", d.bodies);
+  all_are_named("confirmation", d.confirmation);
   all_are_named("track", t.track);
   all_are_named("life", t.life);
   all_are_named("association", t.association);

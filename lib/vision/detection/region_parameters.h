@@ -10,6 +10,7 @@
 #include "vision/detection/outline.h"
 #include "vision/detection/people.h"
 #include "vision/detection/person_box.h"
+#include "vision/detection/two_frame_confirmation.h"
 #include "vision/detection/walking_bodies.h"
 
 namespace cerberus::vision {
@@ -86,6 +87,7 @@ struct DetectionParameters {
   PersonBoxParameters box;
   FreeHeadParameters head;
   WalkingBodies::Parameters bodies;
+  TwoFrameConfirmation::Parameters confirmation;
 };
 
 }  // namespace cerberus::vision

@@ -51,6 +51,7 @@ struct RegionFinder::State {
   BlobParting parting{parameters.parting};
   HeightPrior prior{parameters.height};
   PeopleFinder people{parameters.people};
+  TwoFrameConfirmation newcomers{parameters.confirmation};
   struct Walker {      // a blob that looks like one person
     Point foot, from;  // its present place and the first one, both in pixels of the present frame
     float height;
@@ -89,6 +90,7 @@ void RegionFinder::State::preallocate(Size picture) {
   labeller.preallocate(picture);
   parting.preallocate(picture.width);
   people.preallocate(picture);
+  newcomers.preallocate();
   const std::size_t parts = labeller.limits().components;
   vision::preallocate(walkers, kMostWalkers);
   vision::preallocate(walkers_before, kMostWalkers);
@@ -375,15 +377,16 @@ void RegionFinder::reset() {
   state_->blocks.clear();
   state_->blocks_before.clear();
   state_->regions.clear();
+  state_->newcomers.reset();
   state_->seen = 0;
 }
 
 std::size_t RegionFinder::bytes() const {
   const State& s = *state_;
   return sizeof(State) + s.moving.bytes() + s.closed.bytes() + s.morphology.bytes() + s.labeller.bytes() +
-         s.parting.bytes() + s.people.bytes() + bytes_of(s.walkers) + bytes_of(s.walkers_before) +
-         bytes_of(s.blocks) + bytes_of(s.blocks_before) + bytes_of(s.group) + bytes_of(s.outlines) +
-         s.bodies.bytes() + s.outline_finder.bytes() + bytes_of(s.regions);
+         s.parting.bytes() + s.people.bytes() + s.newcomers.bytes() + bytes_of(s.walkers) +
+         bytes_of(s.walkers_before) + bytes_of(s.blocks) + bytes_of(s.blocks_before) + bytes_of(s.group) +
+         bytes_of(s.outlines) + s.bodies.bytes() + s.outline_finder.bytes() + bytes_of(s.regions);
 }
 
 std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uint16_t> labels,
@@ -420,6 +423,7 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
       if (s.group[i] == static_cast<int>(i)) s.explain(static_cast<int>(i));
   }
   for (Region& r : s.regions) r.area = static_cast<double>(s.moving_in(r.box));
+  if (s.options.people) s.newcomers.filter(s.regions, s.seen, s.options.minimum_area, motion, s.size);
   s.change = {};  // the picture is the caller's
   return s.regions;
 }

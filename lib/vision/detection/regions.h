@@ -35,7 +35,8 @@ class RegionFinder {
   // Forgets the scene: learnt heights, young-scene rules. Called at a cut.
   void reset();
   // mask: in the moving area (0 / 255), out the cleaned mask that the regions were made from. labels: 0 = background,
-  // may be empty. motion: frame k-1 to k, analysis pixels, by which the learnt heights move with the camera. change: what rests at the
+  // may be empty. Small regions of a young scene are returned from their second frame on, see TwoFrameConfirmation.
+  // motion: frame k-1 to k, analysis pixels, by which the learnt heights move with the camera. change: what rests at the
   // sides of a person who moves is not of his box. While the height of people is not known, what rests is not parted from its
   // neighbours. The span lives until the next
   // call. Memory is bounded and allocated at the first picture of a size; components beyond it are clutter, see Labeller.

@@ -4,7 +4,7 @@
 namespace cerberus::vision {
 
 // Frames at the start of a scene in which a background model still has registration errors of its own nearly
-// everywhere.
+// everywhere. The background model and the confirmation of new regions both wait for its end.
 inline constexpr int kUnsettledFrames = 12;
 
 }  // namespace cerberus::vision
