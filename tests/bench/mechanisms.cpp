@@ -74,6 +74,11 @@ const std::vector<Mechanism> kMechanisms{
      6,
      {},
      [](Settings& s) { s.numbers.mechanisms.components.merge_neighbours = false; }},
+    {"fragment_joining",
+     {"components/fragment_joining.*", "components/components.cpp join_fragments"},
+     2,
+     {},
+     [](Settings& s) { s.numbers.mechanisms.components.join_fragments = false; }},
     {"burnt_in", {"burnt_in/*"}, 0, {}, [](Settings& s) { s.options.burnt_in = false; }},
 
     // From the mask to regions.

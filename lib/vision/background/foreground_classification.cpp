@@ -229,6 +229,7 @@ void ForegroundClassification::decide(const ClassificationInput& in, MutableBitV
   unite(weak_.view(), closed, weak_.view());
   morphology_.dilate(weak_.view(), width, p.margin);
   if (young) components_.merge_neighbours(planes, windows_, closed, mask);
+  components_.join_fragments(planes, closed, mask);
 }
 
 std::size_t ForegroundClassification::bytes() const {

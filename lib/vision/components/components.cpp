@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "vision/components/component_sides.h"
+#include "vision/components/fragment_joining.h"
 
 namespace cerberus::vision {
 namespace {
@@ -40,6 +41,8 @@ constexpr struct Parameters {
   double level = 0.5;         // of the lower one's height at which they stand beside each other
   double fragment = 1 / 3.0;  // of the larger one's area: below, a component is a fragment
 
+  double least_fragment = 1 / 2560.0;  // of the picture: a smaller component joins nothing
+  std::size_t most_fragments = 128;    // more components are clutter
   // Derived: more than 320 x 240 pixels can have (labelling.cpp). So many in a larger picture are rain or snow, and the
   // comparison of all pairs would take longer than a frame.
   std::size_t most_components = 512;
@@ -206,6 +209,7 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
                                     MutableBitView mask, MutableBitView absorb) {
   labeller_.find(mask, input.frame.width);
   const auto components = labeller_.components();
+  found_ = components.size();
   evidence_.assign(components.size(), {});
   if (!input.still && ++moved_ == kParameters.shake) origins_.reset();
   measure(input, windows, mask);
@@ -331,6 +335,15 @@ void ForegroundComponents::merge_neighbours(const ComponentInput& input, const F
   for (const Run& r : labeller_.runs())
     if (evidence_[r.component].fragment && !evidence_[r.component].merged)
       clear_bits(mask.row(r.row), r.first, r.end);
+}
+
+void ForegroundComponents::join_fragments(const ComponentInput& input, MutableBitView closed,
+                                          MutableBitView mask) {
+  if (!input.mechanisms.join_fragments || !input.still || found_ < 2) return;
+  const Size size = input.frame.size();
+  const auto components = labeller_.find(
+      closed, size.width, static_cast<std::uint32_t>(kParameters.least_fragment * size.area()));
+  if (components.size() <= kParameters.most_fragments) vision::join_fragments(input.frame, components, mask);
 }
 
 std::size_t ForegroundComponents::bytes() const {

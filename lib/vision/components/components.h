@@ -44,6 +44,7 @@ struct ComponentMechanisms {
   bool find_ghosts = true;       // by components of the same origin
   bool resting_ghosts = true;    // resting_ghosts.h
   bool merge_neighbours = true;  // of a young background
+  bool join_fragments = true;    // fragment_joining.h
 };
 
 struct ComponentInput {
@@ -79,6 +80,9 @@ class ForegroundComponents {
   // closed: the mask with its gaps closed, used as scratch memory.
   void merge_neighbours(const ComponentInput& input, const FrameWindows& windows, MutableBitView closed,
                         MutableBitView mask);
+  // Called last: fills the gap between fragments of one object that lie one above the other (fragment_joining.h), if
+  // the camera stands. Registration errors of a moving camera lie along edges of the background. closed: as above.
+  void join_fragments(const ComponentInput& input, MutableBitView closed, MutableBitView mask);
   std::size_t bytes() const;
 
  private:
@@ -114,6 +118,7 @@ class ForegroundComponents {
   Flashes flashes_;
   ComponentOrigins origins_;
   RestingGhosts resting_ghosts_;
+  std::size_t found_ = 0;  // components that classify() found, before any was dropped
   int moved_ =
       3;  // frames since the camera stood; as many as `shake` and more: it has moved away from what it saw
 };
