@@ -16,6 +16,7 @@ using cerberus::vision::Transform;
 void unknown(CerberusCameraMotion& motion) {
   for (const int diagonal : {0, 4, 8}) motion.matrix[diagonal] = motion.path[diagonal] = 1;
   motion.from = GST_CLOCK_TIME_NONE;
+  motion.calm = 1;
 }
 
 void scale(gdouble (&matrix)[9], const cerberus::Rescaling& sizes) {
@@ -32,7 +33,7 @@ gboolean transform_meta(GstBuffer* to, GstMeta* meta, GstBuffer* from, GQuark ty
 template <typename Archive>
 static void exchange(Archive& archive, CerberusCameraMotion& m) {
   archive(m.matrix, cerberus::publish::Moment{m.from}, m.confidence, m.residual, m.still, m.scene_age,
-          m.path_id, m.path);
+          m.path_id, m.path, m.calm);
 }
 
 CERBERUS_DEFINE_BOXED(CerberusCameraMotion, cerberus_camera_motion, unknown)

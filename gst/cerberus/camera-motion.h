@@ -21,6 +21,9 @@ G_BEGIN_DECLS
  * @path: (array fixed-size=9): motion of the picture from the frame at which the path began to this one, as @matrix.
  *     The motion between any two frames of one path, also with dropped frames in between, is the later one's path times
  *     the inverse of the earlier one's
+ * @calm: share of the scene's corners that follow @matrix within half a pixel of the analysed picture, mean of a second,
+ *     as a tracker upstream has measured it; 1 where none has. Below 0.8 much of what moves is the scene: the picture
+ *     shakes or blurs, or the camera drives past near things. Since: 0.3
  *
  * The camera's own motion between two consecutive frames.
  */
@@ -33,6 +36,7 @@ typedef struct _CerberusCameraMotion {
   guint scene_age;
   guint path_id;
   gdouble path[9];
+  gdouble calm;
 
   /*< private >*/
   gpointer _cerberus_reserved[GST_PADDING];

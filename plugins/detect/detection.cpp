@@ -170,6 +170,7 @@ Analyser::Outcome Detection::analyse(Frame& frame) {
   if (has(Stage::tracks)) {
     if (known) read_regions(frame.buffer);
     state.detector.track(*record, frame, known ? state.found : record->regions->regions);
+    publish_calm(frame.buffer, *record);
     publish_tracks(frame.buffer, *record);
     complain_of_scene(frame.seconds);
     watch(frame, frame.seconds > 0 ? std::max(frame.seconds - state.repeated, 1e-9) : 0);
@@ -209,6 +210,15 @@ void Detection::repeat(Frame& frame) {
   if (has(Stage::tracks)) watch(frame, step);
 }
 
+// The camera's motion is on the frame already; how calm the scene is the tracker alone knows.
+void Detection::publish_calm(GstBuffer* buffer, const vision::Analysis& record) {
+  const CerberusCameraMotion* attached = cerberus_buffer_peek_camera_motion(buffer);
+  if (!attached || !record.camera) return;
+  CerberusCameraMotion motion = *attached;
+  motion.calm = record.camera->calm;
+  cerberus_buffer_set_camera_motion(buffer, &motion);
+}
+
 // Once a stream, after tracks have been withheld for a second: of fewer nobody misses anything.
 void Detection::complain_of_scene(double seconds) {
   constexpr double kLong = 1;
@@ -220,7 +230,7 @@ void Detection::complain_of_scene(double seconds) {
                         ("Much of the scene moves in ways that a turn of the camera does not explain: the "
                          "picture blurs or shakes, or "
                          "the camera drives past what is near. Only what clearly moves by itself is found "
-                         "there. To find people there, put `personverify require=person` behind."),
+                         "there. To find people there, put `personverify` behind."),
                         ("tracks without more motion inside than around them are left out"));
 }
 

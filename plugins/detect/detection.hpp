@@ -83,6 +83,7 @@ class Detection : public Analyser {
   std::string why_no_regions(vision::Size frame, vision::Size mask);
   std::string why_no_tracks() const;
   void watch(const Frame& frame, double step);
+  static void publish_calm(GstBuffer* buffer, const vision::Analysis& record);
   void complain_of_scene(double seconds);
 
   const vision::Stage first_, last_;

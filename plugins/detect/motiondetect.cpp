@@ -8,8 +8,8 @@
  * `cerberus-motion` messages say when motion started and ended, `cerberus-track` messages what each track did.
  *
  * A camera that is carried, shakes or drives past near things sees motion everywhere. There only what clearly moves by itself
- * is published, people who stand or move little are missed, and an info message says so, once a stream: put `personverify
- * require=person` behind, which knows people by their shape. See `motiontrack`.
+ * is published, people who stand or move little are missed, and an info message says so, once a stream: put
+ * `personverify` behind, which knows people by their shape. See `motiontrack`.
  *
  * Every property that the application sets wins over `preset`, whichever was set first. Settings with which nothing can
  * ever be found are warned of by the stage that they are for.

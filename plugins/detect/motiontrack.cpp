@@ -17,7 +17,7 @@
  *
  * Where the camera's motion does not explain the scene (the picture blurs or shakes, or the camera drives past near
  * things), an object is published only while more changes inside its box than around it; an info message says so, once
- * a stream. `personverify require=person` behind judges all of them itself, and gets them all. This needs the planes of the
+ * a stream. `personverify` behind judges all of them itself, and gets them all. This needs the planes of the
  * stages, too.
  *
  * Posts `cerberus-motion` element messages: `state=started` with the objects when the first appears, `state=ended` when

@@ -2,35 +2,30 @@
 /**
  * SECTION:element-personverify
  * @title: personverify
- * @short_description: confirms, splits and classifies tracks with a people detector
+ * @short_description: follows people by what moves and by a people detector
  * @see_also: motiondetect, pirfusion, pantiltsink
  *
- * A curtain, a clock and a car move, too. This element shows parts of the picture to a detector for people, on a thread
- * of its own and `rate` times a second of running time, those first of which the least is known. Then:
+ * A curtain, a clock and a car move, too, and before a camera that shakes or drives everything does. This element shows the
+ * whole frame to a detector for people, on a thread of its own and `rate` times a second of running time, and follows with two
+ * witnesses: what moves, as `motiondetect` upstream tracks it, and what the detector sees. It publishes tracks of its own
+ * in place of those upstream:
  *
- * - a track that is a person is published with the type `person` and the detector's confidence;
- * - a track that holds several people is replaced by one region for each of them; their identities begin at 1000001;
- * - a track of which persons cover only a part has the kind `group`;
- * - other tracks stay as they were, or are left out (`require=person`): `pirfusion` and `pantiltsink` behind then
- *   follow persons only.
+ * - each track has one sum of evidence. A look of the detector adds to it by its score, or takes from it where it does not
+ *   show the track; motion inside the box and motion tracks add, rest in a calm scene takes away. What has not moved
+ *   needs higher scores;
+ * - before a camera that stands a motion track is published as it is, with its identity, and with the type `person` and a
+ *   confidence once a look has shown it. Before one that moves it is published once a look has shown it, or while it is
+ *   fast. Where the scene is not calm (the picture shakes or blurs, or near things pass) motion tracks do not count;
+ * - a person whom no motion track shows is followed by the picture from look to look, with an identity from 1000001 on;
+ * - a motion track that holds several people is replaced by one region for each of them;
+ * - `require=person` leaves out what no look has shown: `pirfusion` and `pantiltsink` behind then follow persons only.
  *
- * With `require=person` the tracker upstream passes on what it would doubt by itself: see `motiontrack`.
+ * The tracker upstream passes on to this element what it would doubt by itself: see `motiontrack`.
  *
- * Between two looks of the detector a person goes on as fast as the looks have shown, or with a track that three looks in a
- * row have found right, or, once a look has left the person out, with a bound track of the person's size. One without a
- * track whom the last look at the place missed is left out until a look shows the person again, and so is one whom a single
- * look shows, without certainty, where only the picture changed and nobody walks; who is found again within 3 s keeps the
- * identity. A detection goes to the person whom it fits best by place and, once the person has been seen alone, by the
- * brightness of the upper and of the lower half. Somebody nearer who hides the person refutes nothing for a second. While
- * a person has a track's identity elsewhere, that track is left out. The detector's hits teach how high people are where
- * they stand: what is much higher or lower is no person, and hits down to .65 of `threshold` count where they are as high,
- * or show somebody who is known; a track that such a hit alone shows is published as it was.
- *
- * People are found by OpenCV's Daimler detector (histograms of oriented gradients, trained on that data set) or with
- * `detector=hog` by its default people detector (the same, trained on INRIA's): upright ones who are at least 24 pixels
- * high. A look shows it up to two regions, as those near the camera and those far
- * away need different scales; a network sees one. It costs up to 60 ms a look on one core. It does not see people who
- * sit or lie, or only their upper half.
+ * People are found by OpenCV's default people detector (histograms of oriented gradients, trained on INRIA's data) or with
+ * `detector=daimler` by its Daimler detector, both in a picture of 480 lines: upright ones who are at least a fifth, or a
+ * sixth, of it high. A look costs 45 to 150 ms of one core; live the detector takes `cpu` of a core at most, and looks
+ * less often where that does not suffice. It does not see people who sit or lie, or only their upper half.
  *
  * `model` names a network instead: an ONNX file whose input has a fixed size (1 x 3 x height x width), or the weights of a
  * darknet model (`.weights`) with its configuration (`.cfg`) beside it or named by `config`. It sees colours, where the frames
@@ -80,8 +75,8 @@
  *
  * Since: 0.1
  */
-// Method: Enzweiler and Gavrila, "Monocular pedestrian detection: survey and experiments", PAMI 2009, for the detector;
-// what is made of its hits is in lib/vision/verification. Quality: docs/quality.md.
+// Method: N. Dalal and B. Triggs, "Histograms of oriented gradients for human detection", CVPR 2005, for the detector;
+// what is made of its boxes is in lib/vision/tracking/evidence. Quality: docs/quality.md.
 #include <cerberus/cerberus.h>
 #include <gst/base/gstbasetransform.h>
 #include <gst/video/video.h>
@@ -89,6 +84,9 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "cerberus/private/element.hpp"
@@ -102,8 +100,9 @@
 #include "vision/clocked_times.h"
 #include "vision/frame_history.h"
 #include "vision/image/luma/luma_stretch.h"
-#include "vision/verification/look_worker.h"
-#include "vision/verification/person_verifier.h"
+#include "vision/persons/look_worker.h"
+#include "vision/tracking/evidence/evidence_tracker.h"
+#include "vision/tracking/evidence/kept_identities.h"
 
 namespace {
 
@@ -139,30 +138,34 @@ GType require_type() {
   return type;
 }
 
-enum { DETECTOR_DAIMLER, DETECTOR_HOG };
+enum { DETECTOR_HOG, DETECTOR_DAIMLER };
 
 GType detector_type() {
   static const GEnumValue kValues[] = {
-      {DETECTOR_DAIMLER, "OpenCV's Daimler detector: bodies of 24 pixels and more", "daimler"},
-      {DETECTOR_HOG, "OpenCV's default people detector: finds less that is none", "hog"},
+      {DETECTOR_HOG, "OpenCV's default people detector", "hog"},
+      {DETECTOR_DAIMLER, "OpenCV's Daimler detector: more of small people, more that is none", "daimler"},
       {0, nullptr, nullptr}};
   static const GType type = g_enum_register_static("CerberusPersonVerifyDetector", kValues);
   return type;
 }
 
 struct Settings {
-  double rate = 4, threshold = 0, phase = 0;
+  double rate = 4, cpu = 0.25, threshold = 0, phase = 0;
   std::string model, config, labels, mean, scale;
-  int require = REQUIRE_NONE, detector = DETECTOR_DAIMLER;
+  int require = REQUIRE_NONE, detector = DETECTOR_HOG;
 };
 
 const cerberus::plugin::Property<Settings> kProperties[] = {
     property("rate", &Settings::rate, 0.1, kMostRate,
-             "Looks of the detector a second of running time, all tracks together"),
+             "Looks of the detector a second of running time, at most where the source is live"),
+    property(
+        "cpu", &Settings::cpu, 0.01, 1,
+        "Where the source is live: share of a processor core that the detector may take; a slow one looks "
+        "less often than `rate`"),
     property("require", &Settings::require, require_type, "What is published"),
     property("threshold", &Settings::threshold, 0, 10,
              "Score from which on a hit is a person: lower finds more people and more things that are none; "
-             "0 = 1.9 of the Daimler detector, 0.5 of hog, 0.4 of a model")
+             "0 = 0.5 of hog, 1.5 of the Daimler detector, 0.55 of a model")
         .read_at_start(),
     property("detector", &Settings::detector, detector_type,
              "Which detector finds people where the property model names none")
@@ -194,29 +197,26 @@ const cerberus::plugin::Property<Settings> kProperties[] = {
         .read_at_start(),
 };
 
-struct Pending {
-  vision::PersonVerifier::Look look;
-  GstClockTime time = 0;
-};
-
 struct State {  // streaming thread only
   GstVideoInfo info;
   vision::Size reduced;
   vision::LumaStretch stretch;
   vision::LumaScaler scaler;
   vision::Image<std::uint8_t> picture;
-  vision::PersonVerifier verifier;
+  vision::EvidenceTracker tracker;
   vision::LookWorker worker;
-  std::optional<Pending> pending;
+  GstClockTime looked = GST_CLOCK_TIME_NONE;         // time of the frame of the look in progress
+  GstClockTime looked_before = GST_CLOCK_TIME_NONE;  // of the last one that was taken in
+  std::vector<vision::PersonDetection> bodies;       // of that
   std::optional<bool> live;
-  std::optional<int> require;  // as last seen
   vision::FrameHistory history{vision::FrameHistory::Parameters{.gap_seconds = kLongestGap}};
   GstClockTime last = GST_CLOCK_TIME_NONE, next_look = GST_CLOCK_TIME_NONE;
-  std::vector<vision::Candidate> candidates, candidates_before;  // of this frame, of the one before
-  std::vector<CerberusRegion> before, after;  // regions of the frame, and what is published
-  std::uint32_t last_foreign = 0;             // identities of theirs given so far
-  bool foreign = false;                       // they are other elements' regions of interest
-  double threshold = 0, certain = 0;          // scores of the detector in the worker
+  std::vector<vision::Track> motion, foreign_before;  // of this frame; of other elements, of the one before
+  std::vector<CerberusRegion> before, after;          // regions of the frame, and what is published
+  std::uint32_t last_foreign = 0;                     // identities of theirs given so far
+  bool foreign = false;                               // they are other elements' regions of interest
+  cerberus::plugin::DetectorUse use;                  // of the detector in the worker
+  double threshold = 0;
   cerberus::plugin::Complaint caps, frame;
 };
 
@@ -229,9 +229,9 @@ CERBERUS_DEFINE_TYPE(CerberusPersonVerify, cerberus_person_verify, GstBaseTransf
                      Private)
 
 void forget(State& state) {
-  if (state.pending) state.worker.wait();
-  state.pending.reset();
-  state.verifier.reset();
+  if (GST_CLOCK_TIME_IS_VALID(state.looked)) state.worker.wait();
+  state.looked = state.looked_before = GST_CLOCK_TIME_NONE;
+  state.tracker.reset();
   state.stretch.reset();
   state.last = state.next_look = GST_CLOCK_TIME_NONE;
 }
@@ -252,26 +252,23 @@ gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
     Private& priv = *cerberus_person_verify_self(transform)->priv;
     State& state = priv.state;
     state.caps.forget(), state.frame.forget();
-    state.live.reset(), state.require.reset();
+    state.live.reset();
     const Settings settings = priv.settings.snapshot();
     const bool model = !settings.model.empty();
     const auto kind = model                               ? cerberus::plugin::DetectorKind::model
                       : settings.detector == DETECTOR_HOG ? cerberus::plugin::DetectorKind::hog
                                                           : cerberus::plugin::DetectorKind::daimler;
-    const cerberus::plugin::DetectorUse& use = cerberus::plugin::use_of(kind);
-    state.threshold = settings.threshold > 0 ? settings.threshold : use.threshold;
-    state.verifier.set_margins(use.above_head, use.below_feet);
-    state.verifier.set_fits_regions(model);
-    state.certain = std::max(use.certain, state.threshold);
+    state.use = cerberus::plugin::use_of(kind);
+    state.threshold = settings.threshold > 0 ? settings.threshold : state.use.threshold;
     std::string wrong;
     auto detector =
-        cerberus::plugin::make_look_detector(kind, state.verifier.least_score(state.threshold),
-                                             {.model = cerberus::plugin::model_path(settings.model),
-                                              .config = settings.config,
-                                              .labels = settings.labels,
-                                              .mean = settings.mean,
-                                              .scale = settings.scale},
-                                             wrong);
+        cerberus::plugin::make_whole_frame_detector(kind,
+                                                    {.model = cerberus::plugin::model_path(settings.model),
+                                                     .config = settings.config,
+                                                     .labels = settings.labels,
+                                                     .mean = settings.mean,
+                                                     .scale = settings.scale},
+                                                    wrong);
     if (!detector) {
       refuse_model(transform, wrong);
       return FALSE;
@@ -286,7 +283,7 @@ gboolean cerberus_person_verify_stop(GstBaseTransform* transform) {
   return cerberus::guarded(transform, FALSE, [&]() -> gboolean {
     State& state = cerberus_person_verify_self(transform)->priv->state;
     state.worker.stop();
-    state.pending.reset();
+    state.looked = GST_CLOCK_TIME_NONE;
     return TRUE;
   });
 }
@@ -313,17 +310,20 @@ gboolean cerberus_person_verify_sink_event(GstBaseTransform* transform, GstEvent
   return GST_BASE_TRANSFORM_CLASS(cerberus_person_verify_parent_class())->sink_event(transform, event);
 }
 
-vision::Candidate candidate_of(const CerberusRegion& region) {
-  return {.id = region.id,
-          .box = {region.x, region.y, region.width, region.height},
-          .state = static_cast<vision::TrackState>(region.state),
-          .kind = static_cast<vision::RegionKind>(region.kind)};
+vision::Track track_of(const CerberusRegion& region) {
+  vision::Track track;
+  track.id = region.id;
+  track.box = {region.x, region.y, region.width, region.height};
+  track.vx = region.vx, track.vy = region.vy;
+  track.state = static_cast<vision::TrackState>(region.state);
+  track.kind = static_cast<vision::RegionKind>(region.kind);
+  return track;
 }
 
 // Regions of interest of other elements, with identities that they keep from frame to frame.
 void read_foreign(State& state, GstBuffer* buffer) {
-  std::swap(state.candidates, state.candidates_before);
-  state.candidates.clear(), state.before.clear();
+  std::swap(state.motion, state.foreign_before);
+  state.motion.clear(), state.before.clear();
   gpointer iterator = nullptr;
   while (GstMeta* meta = gst_buffer_iterate_meta_filtered(buffer, &iterator,
                                                           GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE)) {
@@ -333,34 +333,36 @@ void read_foreign(State& state, GstBuffer* buffer) {
     region.x = roi->x, region.y = roi->y, region.width = roi->w, region.height = roi->h;
     region.tracked = TRUE;
     state.before.push_back(region);
-    state.candidates.push_back(candidate_of(region));
+    state.motion.push_back(track_of(region));
   }
-  vision::keep_identities(state.candidates_before, state.candidates, state.last_foreign);
-  for (std::size_t i = 0; i < state.before.size(); ++i) state.before[i].id = state.candidates[i].id;
+  vision::keep_identities(state.foreign_before, state.motion, state.last_foreign);
+  for (std::size_t i = 0; i < state.before.size(); ++i) state.before[i].id = state.motion[i].id;
 }
 
 void read_regions(State& state, GstBuffer* buffer) {
   state.foreign = !cerberus_buffer_regions_known(buffer);
   if (state.foreign) return read_foreign(state, buffer);
-  state.before.clear(), state.candidates.clear();
+  state.before.clear(), state.motion.clear();
   g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
   for (guint i = 0; i < regions->len; ++i) {
     state.before.push_back(*static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i)));
-    state.candidates.push_back(candidate_of(state.before.back()));
+    state.motion.push_back(track_of(state.before.back()));
   }
 }
 
-void attach(State& state, GstBuffer* buffer, bool persons_only) {
+void attach(State& state, GstBuffer* buffer, std::span<const vision::EvidenceResult> results,
+            bool persons_only) {
   state.after.clear();
-  for (const vision::VerifiedRegion& found : state.verifier.result()) {
+  for (const vision::EvidenceResult& found : results) {
     if (!found.person && (persons_only || state.foreign)) continue;
     CerberusRegion region;
     cerberus_region_init(&region);
-    if (found.candidate >= 0) {
-      region = state.before[static_cast<std::size_t>(found.candidate)];
+    if (found.motion >= 0) {
+      region = state.before[static_cast<std::size_t>(found.motion)];
     } else {
-      region.vx = found.vx, region.vy = found.vy;
+      region.vx = found.velocity.x, region.vy = found.velocity.y;
       region.age = cerberus::plugin::clock_time(found.age);
+      region.state = static_cast<CerberusRegionState>(found.state);
     }
     region.id = found.id, region.tracked = TRUE;
     region.x = found.box.x, region.y = found.box.y;
@@ -380,41 +382,46 @@ void attach(State& state, GstBuffer* buffer, bool persons_only) {
   cerberus_buffer_set_regions(buffer, array);
 }
 
-// A look that is due is taken in: live where its result is there, else it is waited for. Returns why the detector
-// cannot be used, where that is so.
-std::optional<std::string> take_in(State& state, GstClockTime now) {
-  if (!state.pending) return std::nullopt;
-  if (state.live.value_or(true) ? !state.worker.is_done() : now < state.pending->time + kDelay)
-    return std::nullopt;
-  std::vector<vision::PersonDetection>& hits = state.worker.wait();
-  const Pending pending = *std::exchange(state.pending, std::nullopt);
-  if (state.worker.refusal()) return state.worker.refusal();
-  for (const vision::PersonDetection& hit : hits)
-    GST_LOG("%" GST_TIME_FORMAT ": %.0f,%.0f %.0fx%.0f, score %.2f", GST_TIME_ARGS(pending.time), hit.box.x,
-            hit.box.y, hit.box.width, hit.box.height, hit.score);
-  state.verifier.apply(pending.look, hits, state.threshold, state.certain);
-  return std::nullopt;
+// A look that is due is taken in: live where its result is there, else it is waited for. nullopt: there is none, or in
+// `refusal` why the detector cannot be used.
+std::optional<vision::EvidenceLook> take_in(State& state, GstClockTime now,
+                                            std::optional<std::string>& refusal) {
+  if (!GST_CLOCK_TIME_IS_VALID(state.looked)) return std::nullopt;
+  if (state.live.value_or(true) ? !state.worker.is_done() : now < state.looked + kDelay) return std::nullopt;
+  const GstClockTime looked = std::exchange(state.looked, GST_CLOCK_TIME_NONE);
+  const std::vector<vision::PersonDetection>& found = state.worker.wait();
+  refusal = state.worker.refusal();
+  if (refusal) return std::nullopt;
+  state.bodies.clear();
+  for (const vision::PersonDetection& body : found) {
+    GST_LOG("%" GST_TIME_FORMAT ": %.0f,%.0f %.0fx%.0f, score %.2f", GST_TIME_ARGS(looked), body.box.x,
+            body.box.y, body.box.width, body.box.height, body.score);
+    state.bodies.push_back(
+        {body.box, cerberus::plugin::evidence_score(body.score, state.threshold, state.use)});
+  }
+  vision::EvidenceLook look{state.bodies};
+  if (GST_CLOCK_TIME_IS_VALID(state.looked_before))
+    look.seconds = static_cast<double>(looked - state.looked_before) / GST_SECOND;
+  state.looked_before = looked;
+  return look;
 }
 
-// The next look, where one is due, from the mapped frame.
-void look(State& state, const vision::PictureSource& source, GstClockTime now, const Settings& settings) {
-  const auto period = static_cast<GstClockTime>(GST_SECOND / settings.rate);
-  state.verifier.set_period(1 / settings.rate);
+// The next look, where one is due, at the mapped frame.
+void look(State& state, const vision::PictureSource& source, vision::Size size, GstClockTime now,
+          const Settings& settings) {
+  auto period = static_cast<GstClockTime>(GST_SECOND / settings.rate);
   if (!GST_CLOCK_TIME_IS_VALID(state.next_look))
     state.next_look = now + static_cast<GstClockTime>(settings.phase * static_cast<double>(period));
-  if (state.pending || now < state.next_look) return;
-  const auto chosen = state.verifier.choose();
-  if (!chosen) return;
-  std::size_t number = 0;
-  for (const vision::LookRegion& region : chosen->regions.chosen()) {
-    GST_LOG("%" GST_TIME_FORMAT ": looks at %d,%d %dx%d, scale %.2f", GST_TIME_ARGS(now), region.x, region.y,
-            region.width, region.height, region.scale);
-    state.worker.picture(number++).take(source, region.x, region.y, {region.width, region.height},
-                                        state.worker.sees_colours());
+  if (GST_CLOCK_TIME_IS_VALID(state.looked) || now < state.next_look) return;
+  state.worker.picture().take(source, 0, 0, size, state.worker.sees_colours());
+  state.worker.begin();
+  state.tracker.begin_look();
+  state.looked = now;
+  if (state.live.value_or(true)) {
+    const auto taken = static_cast<double>(state.worker.duration().count());
+    period = std::max(period, static_cast<GstClockTime>(taken / settings.cpu));
   }
-  state.worker.begin(chosen->regions);
-  state.pending = Pending{*chosen, now};
-  // On the beat, unless there was nothing to look at for some time.
+  // On the beat, unless a look took longer than that.
   state.next_look = (now - state.next_look > period / 2 ? now : state.next_look) + period;
 }
 
@@ -423,8 +430,6 @@ GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, G
     Private& priv = *cerberus_person_verify_self(transform)->priv;
     State& state = priv.state;
     const Settings settings = priv.settings.snapshot();
-    if (state.require && state.require != settings.require) gst_base_transform_reconfigure_sink(transform);
-    state.require = settings.require;
     if (!state.live) state.live = cerberus::plugin::is_live(GST_BASE_TRANSFORM_SINK_PAD(transform));
     cerberus::VideoFrame frame(state.info, buffer, GST_MAP_READ);
     const std::string wrong = frame ? "" : "A frame cannot be read: its tracks are not verified.";
@@ -450,28 +455,37 @@ GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, G
     vision::PictureSource source = cerberus::picture_source(*frame.get());
     source.luma = state.stretch.stretched(source.luma);
     state.scaler.scale(source.luma, state.picture.view());
-    vision::Transform motion;
-    if (const CerberusCameraMotion* camera = cerberus_buffer_peek_camera_motion(buffer))
-      std::copy_n(camera->matrix, motion.m.size(), motion.m.begin());
+    vision::EvidenceFrame seen;
+    seen.seconds = seconds;
+    seen.fresh = step.fresh;
+    seen.size = size;
+    seen.picture = state.picture.view();
+    if (const CerberusCameraMotion* camera = cerberus_buffer_peek_camera_motion(buffer)) {
+      std::copy_n(camera->matrix, seen.motion.m.size(), seen.motion.m.begin());
+      seen.still = camera->still;
+      seen.calm = camera->calm;
+    } else {
+      seen.still = true;  // what moves is other elements' to say
+    }
     read_regions(state, buffer);
-    state.verifier.update(state.picture.view(), size, motion, seconds, state.candidates);
-    if (const auto refusal = take_in(state, now)) {
+    std::optional<std::string> refusal;
+    const auto looked = take_in(state, now, refusal);
+    if (refusal) {
       refuse_model(transform, *refusal);
       return GST_FLOW_ERROR;
     }
-    look(state, source, now, settings);
+    const auto results = state.tracker.update(seen, state.motion, looked);
+    look(state, source, size, now, settings);
     frame.unmap();
-    attach(state, buffer, settings.require == REQUIRE_PERSON);
+    attach(state, buffer, results, settings.require == REQUIRE_PERSON);
     return GST_FLOW_OK;
   });
 }
 
-// What is published only where the detector confirms it may come unproven; all else only as motion proves it.
+// The tracker behind judges itself what motion alone supports.
 gboolean cerberus_person_verify_query(GstBaseTransform* transform, GstPadDirection direction,
                                       GstQuery* query) {
-  const Private& priv = *cerberus_person_verify_self(transform)->priv;
-  if (direction == GST_PAD_SINK && cerberus::plugin::is_record_query(query) &&
-      priv.settings.snapshot().require == REQUIRE_PERSON)
+  if (direction == GST_PAD_SINK && cerberus::plugin::is_record_query(query))
     cerberus::plugin::add_wanted(query, cerberus::plugin::kAllTracks);
   return cerberus_person_verify_parent_class()->query(transform, direction, query);
 }
@@ -486,7 +500,7 @@ void cerberus_person_verify_class_init(CerberusPersonVerifyClass* klass) {
   cerberus::plugin::install_properties<CerberusPersonVerify, kProperties>(G_OBJECT_CLASS(klass));
   GstElementClass* element = GST_ELEMENT_CLASS(klass);
   gst_element_class_set_static_metadata(element, "Person verifier", "Filter/Analyzer/Video",
-                                        "Confirms, splits and classifies tracks with a people detector",
+                                        "Follows people by what moves and by a people detector",
                                         "The Cerberus developers");
   gst_element_class_add_static_pad_template(element, &sink_template);
   gst_element_class_add_static_pad_template(element, &src_template);

@@ -87,8 +87,7 @@ VISION = {
     'vision/detection': ('vision/geometry',),
     'vision/persons': ('vision/geometry',),
     'vision/zones': ('vision/geometry',),
-    'vision/tracking': ('vision/detection',),
-    'vision/verification': ('vision/tracking', 'vision/persons'),
+    'vision/tracking': ('vision/detection', 'vision/persons'),
 }
 ARROWS = VISION | {
     'text': (),

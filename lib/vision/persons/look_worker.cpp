@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/verification/look_worker.h"
+#include "vision/persons/look_worker.h"
 
-#include <span>
+#include <utility>
 
 namespace cerberus::vision {
 
-void LookWorker::start(std::unique_ptr<PersonDetector> detector) {
+void LookWorker::start(std::unique_ptr<WholeFrameDetector> detector) {
   stop();
   detector_ = std::move(detector);
   stage_ = Stage::idle;
@@ -23,10 +23,9 @@ void LookWorker::stop() {
   detector_.reset();
 }
 
-void LookWorker::begin(const LookRegions& regions) {
+void LookWorker::begin() {
   {
     const std::lock_guard guard(lock_);
-    regions_ = regions;
     stage_ = Stage::asked;
   }
   changed_.notify_all();
@@ -42,7 +41,7 @@ std::vector<PersonDetection>& LookWorker::wait() {
   changed_.wait(guard, [&] { return stage_ != Stage::asked; });
   stage_ = Stage::idle;
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
-  return hits_;
+  return bodies_;
 }
 
 void LookWorker::run() {
@@ -51,20 +50,15 @@ void LookWorker::run() {
     changed_.wait(guard, [&] { return stage_ == Stage::asked || stage_ == Stage::ended; });
     if (stage_ == Stage::ended) return;
     guard.unlock();
-    hits_.clear();
     refusal_.reset();
     std::exception_ptr failure;
+    const auto begun = std::chrono::steady_clock::now();
     try {
-      for (std::size_t i = 0; i < regions_.count && !refusal_; ++i) {
-        const LookRegion& region = regions_.all[i];
-        const std::size_t earlier = hits_.size();
-        refusal_ = detector_->detect(pictures_[i].view(), region.scale, hits_);
-        for (PersonDetection& hit : std::span(hits_).subspan(earlier))
-          hit.box.x += region.x, hit.box.y += region.y;
-      }
+      refusal_ = detector_->find(picture_.view(), bodies_);
     } catch (...) {
       failure = std::current_exception();
     }
+    duration_ = std::chrono::steady_clock::now() - begun;
     guard.lock();
     failure_ = failure;
     if (stage_ == Stage::ended) return;

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/tracking/evidence/evidence_track.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "vision/tracking/evidence/picture_follower.h"
+
+namespace cerberus::vision {
+
+namespace {
+
+constexpr double kFirstPlace = 0.1,
+                 kFirstHeight = 0.1;  // standard deviations of a first box: pixels, logarithm
+constexpr double kTravelTime = 1;     // s
+
+Point middle_of(const Box& box) {
+  return {box.x + box.width / 2, box.y + box.height / 2};
+}
+
+// By which the transform enlarges what is at this point.
+double scale_at(const Transform& t, const Point& p) {
+  const Point o = t.apply(p), x = t.apply({p.x + 1, p.y}), y = t.apply({p.x, p.y + 1});
+  return std::sqrt(std::abs((x.x - o.x) * (y.y - o.y) - (x.y - o.y) * (y.x - o.x)));
+}
+
+}  // namespace
+
+EvidenceTrack EvidenceTrack::begin(const Box& box, std::uint64_t number) {
+  EvidenceTrack t;
+  t.set_box(box);
+  t.first_ = number;
+  t.keep(number);
+  return t;
+}
+
+void EvidenceTrack::set_box(const Box& box) {
+  const Point to = middle_of(box);
+  if (height > 0) way_.x += (to.x - centre.x) / height, way_.y += (to.y - centre.y) / height;
+  centre = to;
+  height = box.height, shape = box.width / box.height;
+  place_variance = kFirstPlace * kFirstPlace, height_variance = kFirstHeight * kFirstHeight;
+}
+
+void EvidenceTrack::follow(const Pyramid* before, const Pyramid& now, const Transform& motion, double seconds,
+                           const EvidenceParameters& p) {
+  age += seconds, unseen += seconds, since_motion += seconds;
+  hit = false;
+  const Point at_rest = motion.apply(centre);
+  const double grown = height * scale_at(motion, centre);
+  std::optional<BoxStep> step;
+  if (before && !mirrors)
+    step = follow_box(*before, now, box(), {at_rest.x - centre.x, at_rest.y - centre.y});
+  Point own{velocity.x * seconds, velocity.y * seconds};
+  if (step) {
+    height *= step->growth;
+    own = {(centre.x + step->shift.x - at_rest.x) / height, (centre.y + step->shift.y - at_rest.y) / height};
+    const double gain = std::min(1.0, seconds / p.velocity_time);
+    velocity.x += gain * (own.x / seconds - velocity.x), velocity.y += gain * (own.y / seconds - velocity.y);
+  } else {
+    height = grown;
+  }
+  centre = {at_rest.x + own.x * height, at_rest.y + own.y * height};
+  way_.x += own.x, way_.y += own.y;
+  const double drift = (step ? p.followed_drift : p.free_drift) * height;
+  place_variance += drift * drift * seconds;
+  height_variance += p.height_drift * p.height_drift * seconds;
+}
+
+void EvidenceTrack::correct(const Box& seen, std::uint64_t number, double weight,
+                            const EvidenceParameters& p) {
+  const Box& then = box_at(number);
+  const Point was = middle_of(then), is = middle_of(seen);
+  const double place = weight * p.place * height, tall = weight * p.height;
+  const double gain = place_variance / (place_variance + place * place);
+  centre.x += gain * height * (is.x - was.x) / then.height;
+  centre.y += gain * height * (is.y - was.y) / then.height;
+  place_variance *= 1 - gain;
+  const double share = height_variance / (height_variance + tall * tall);
+  height *= std::pow(seen.height / then.height, share);
+  shape *= std::pow(seen.width / seen.height * then.height / then.width, share);
+  height_variance *= 1 - share;
+}
+
+void EvidenceTrack::keep(std::uint64_t number) {
+  places_[number % kKept] = {box(), way_, age};
+  last_ = number;
+}
+
+bool EvidenceTrack::travels(double distance) const {
+  for (std::uint64_t n = last_; n >= first_ && n + kKept > last_; --n) {
+    const Place& place = places_[n % kKept];
+    if (age - place.age > kTravelTime) break;
+    if (std::hypot(way_.x - place.way.x, way_.y - place.way.y) > distance) return true;
+    if (n == 0) break;
+  }
+  return false;
+}
+
+void EvidenceTrack::add(double more, const EvidenceParameters& p) {
+  evidence = std::min(p.ceiling, evidence + more);
+}
+
+}  // namespace cerberus::vision

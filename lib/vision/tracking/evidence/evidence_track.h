@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// One object as two witnesses show it: motion, and the looks of a people detector. Lengths are in h, the height of the
+// track's box; places in pixels of the reduced picture.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "vision/detection/region.h"
+#include "vision/geometry/box.h"
+#include "vision/geometry/transform.h"
+#include "vision/image/pyramid.h"
+#include "vision/tracking/evidence/evidence_parameters.h"
+
+namespace cerberus::vision {
+
+struct EvidenceTrack {
+  static constexpr std::size_t kKept = 32;  // places of the last frames, for looks that are late
+
+  std::uint32_t id = 0;
+  std::uint32_t motion_id = 0;  // of the motion track that it was last matched with; 0: none
+  // It is where that motion track is, and ends with it.
+  bool mirrors = false;
+  bool holds_several = false;  // it mirrors a group, or a look has found several bodies in it
+  bool person = false;         // a look has shown it
+  bool published = false;      // its evidence has sufficed
+  bool moved = false;          // it has travelled, or its inside has moved
+  bool hit = false;            // observed in this frame
+  RegionKind kind = RegionKind::person_like;
+  double evidence = 0;
+  double quality = 0;  // mean of what the last looks gave: of two tracks of one body the better one stays
+  double age = 0, unseen = 0, since_motion = 1e9;  // s
+  double fast = 0;                                 // s for which its motion track has been fast
+  Point centre, velocity;                          // velocity: h/s relative to the scene
+  double height = 0, shape = 0;                    // shape: width / height
+  double place_variance = 0, height_variance = 0;  // pixels^2; of the logarithm
+
+  static EvidenceTrack begin(const Box& box, std::uint64_t number);
+
+  Box box() const { return {centre.x - shape * height / 2, centre.y - height / 2, shape * height, height}; }
+  void set_box(const Box& box);
+  // To the present frame: by the picture, else by its velocity. before, now: of the last two frames; before is nullptr
+  // where there is none. motion: of the camera, reduced pixels.
+  void follow(const Pyramid* before, const Pyramid& now, const Transform& motion, double seconds,
+              const EvidenceParameters& p);
+  // A box in frame `number`: the present one or one of the last kKept. weight: standard deviations are that many times
+  // as large.
+  void correct(const Box& seen, std::uint64_t number, double weight, const EvidenceParameters& p);
+  // Keeps the place for late looks; once a frame.
+  void keep(std::uint64_t number);
+  bool was_there(std::uint64_t number) const { return number >= first_ && number + kKept > last_; }
+  const Box& box_at(std::uint64_t number) const { return places_[number % kKept].box; }
+  // Whether it has gone so far, h, from any of its places of the last second.
+  bool travels(double distance) const;
+  void add(double more, const EvidenceParameters& p);
+
+ private:
+  struct Place {
+    Box box;
+    Point way;
+    double age = 0;
+  };
+  Point way_;  // h, since it began, relative to the scene
+  std::uint64_t first_ = 0, last_ = 0;
+  std::array<Place, kKept> places_;
+};
+
+}  // namespace cerberus::vision

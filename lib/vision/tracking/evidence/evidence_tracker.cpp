@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/tracking/evidence/evidence_tracker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "vision/tracking/evidence/picture_follower.h"
+
+namespace cerberus::vision {
+
+namespace {
+
+constexpr std::uint32_t kFirstOwn = 1000001;  // identity
+constexpr int kLevels = 3;                    // of the pyramids
+constexpr double kSure = 0.5;                 // score of a body that begins a track, see EvidenceLook
+constexpr double kMotionQuality = 0.8;        // of a track that motion shows
+constexpr double kMissedQuality = -0.5;       // of one that a look does not show
+constexpr double kQualityGain = 0.3, kMostQuality = 2;
+constexpr double kAgeQuality = 0.02, kOld = 5;  // a second of age, up to so many
+constexpr double kWeakWeight = 1.5;             // standard deviations of weak boxes and of motion regions
+constexpr std::size_t kMostKnown = 256;         // motion tracks that are remembered
+constexpr double kStillTime = 1;                // s for which the camera has stood before it counts as still
+
+double visible_share(const Box& box, Size picture) {
+  return share_within(box, {0, 0, double(picture.width), double(picture.height)});
+}
+
+// Whether the level differs by more than `most` from every pixel around (x, y): registration is good to a pixel.
+bool differs_around(GrayView picture, int x, int y, int level, int most) {
+  for (int j = -1; j <= 1; ++j)
+    for (int i = -1; i <= 1; ++i)
+      if (std::abs(picture.at(x + i, y + j) - level) <= most) return false;
+  return true;
+}
+
+Box scaled(const Box& box, double across, double down) {
+  return {box.x * across, box.y * down, box.width * across, box.height * down};
+}
+
+}  // namespace
+
+void EvidenceTracker::reset() {
+  tracks_.clear(), known_.clear(), results_.clear();
+  number_ = look_number_ = 0;
+  camera_stood_ = kStillTime;
+  next_id_ = std::max(next_id_, kFirstOwn);
+}
+
+Box EvidenceTracker::reduced(const Box& box) const {
+  return scaled(box, static_cast<double>(frame_.picture.width) / frame_.size.width,
+                static_cast<double>(frame_.picture.height) / frame_.size.height);
+}
+
+void EvidenceTracker::begin_look() {
+  Image<std::uint8_t>& present = pictures_[present_];
+  looked_.resize(present.size());
+  std::memcpy(looked_.view().data, present.view().data, present.bytes());
+  looked_pyramid_.borrow(looked_.view(), kLevels);
+  look_number_ = number_;
+  since_look_ = {};
+}
+
+// Whether more of the box has changed since the last frame than the camera's motion explains.
+bool EvidenceTracker::inside_moves(const Box& box, bool calm) const {
+  if (number_ < 2) return false;
+  const GrayView now = pictures_[present_].view(), before = pictures_[1 - present_].view();
+  const auto column = [&](double x) { return std::clamp(static_cast<int>(std::lround(x)), 0, now.width); };
+  const auto row = [&](double y) { return std::clamp(static_cast<int>(std::lround(y)), 0, now.height); };
+  const int left = column(box.x), right = column(box.right());
+  const int from = column(box.x - box.width / 2), to = column(box.right() + box.width / 2);
+  const Transform back = motion_.inverse();
+  int inside = 0, changed_inside = 0, around = 0, changed_around = 0;
+  for (int y = row(box.y); y < row(box.bottom()); ++y)
+    for (int x = from; x < to; ++x) {
+      const Point was = back.apply({double(x), double(y)});
+      const int u = static_cast<int>(std::lround(was.x)), v = static_cast<int>(std::lround(was.y));
+      if (u < 1 || v < 1 || u >= before.width - 1 || v >= before.height - 1) continue;
+      const bool changed = differs_around(before, u, v, now.at(x, y), p_.changed);
+      if (x >= left && x < right)
+        ++inside, changed_inside += changed;
+      else
+        ++around, changed_around += changed;
+    }
+  if (inside == 0) return false;
+  const double share = static_cast<double>(changed_inside) / inside;
+  const double other = around > 0 ? static_cast<double>(changed_around) / around : 0;
+  return share > p_.inside && (calm || share > p_.around * other);
+}
+
+void EvidenceTracker::match_look(bool sure) {
+  rows_.clear(), columns_.clear();
+  for (std::size_t i = 0; i < tracks_.size(); ++i)
+    if (!tracks_[i].hit && !tracks_[i].holds_several && tracks_[i].was_there(look_number_))
+      rows_.push_back(i);
+  for (std::size_t j = 0; j < bodies_.size(); ++j)
+    if ((bodies_[j].score >= kSure) == sure && bodies_[j].score > p_.weak) columns_.push_back(j);
+  if (rows_.empty() || columns_.empty()) return;
+  cost_.assign(rows_.size() * columns_.size(), Assignment::kForbidden);
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    for (std::size_t j = 0; j < columns_.size(); ++j) {
+      const double overlap =
+          intersection_over_union(tracks_[rows_[i]].box_at(look_number_), bodies_[columns_[j]].box);
+      if (overlap >= p_.gate) cost_[i * columns_.size() + j] = 1 - overlap;
+    }
+  const auto pairs =
+      assignment_.solve(cost_, static_cast<int>(rows_.size()), static_cast<int>(columns_.size()));
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (pairs[i] < 0) continue;
+    const auto j = static_cast<std::size_t>(pairs[i]);
+    if (cost_[i * columns_.size() + j] >= Assignment::kForbidden) continue;
+    EvidenceTrack& t = tracks_[rows_[i]];
+    const PersonDetection& body = bodies_[columns_[j]];
+    if (!t.mirrors) t.correct(body.box, look_number_, sure ? 1 : kWeakWeight, p_);
+    t.add(std::clamp(body.score - (t.moved ? p_.neutral : p_.unmoved), p_.least, p_.most), p_);
+    t.quality += kQualityGain * (std::min(body.score, kMostQuality) - t.quality);
+    t.hit = t.person = true;
+    t.unseen = 0;
+    used_[columns_[j]] = 1;
+  }
+}
+
+// A track begins in the frame that was looked at, and follows the picture to the present one.
+void EvidenceTracker::begin_at(const PersonDetection& body) {
+  Box box = body.box;
+  if (look_number_ < number_) {
+    const Point then{box.x + box.width / 2, box.y + box.height / 2}, rest = since_look_.apply(then);
+    Point shift{rest.x - then.x, rest.y - then.y};
+    double growth = 1;
+    if (const auto step = follow_box(looked_pyramid_, pyramids_[present_], box, shift))
+      shift = step->shift, growth = step->growth;
+    box = {box.x + shift.x - (growth - 1) * box.width / 2, box.y + shift.y - (growth - 1) * box.height / 2,
+           growth * box.width, growth * box.height};
+  }
+  const auto covers = [&](const EvidenceTrack& t) {
+    return !t.holds_several && is_one_body(box, t.box(), p_.body);
+  };
+  if (std::ranges::any_of(tracks_, covers)) return;
+  EvidenceTrack t = EvidenceTrack::begin(box, number_);
+  t.id = next_id_++;
+  t.person = t.hit = true;
+  t.evidence = std::clamp(body.score - p_.unmoved, 0.0, p_.most);
+  t.quality = kQualityGain * std::min(body.score, kMostQuality);
+  tracks_.push_back(t);
+}
+
+void EvidenceTracker::take_look(const EvidenceLook& look) {
+  bodies_.clear();
+  for (const PersonDetection& body : look.bodies) bodies_.push_back({reduced(body.box), body.score});
+  keep_one_box_a_body(bodies_, p_.body);
+  for (EvidenceTrack& t : tracks_) {
+    if (!t.mirrors || !t.was_there(look_number_)) continue;
+    const auto inside = std::ranges::count_if(bodies_, [&](const PersonDetection& body) {
+      return body.score >= kSure && share_within(body.box, t.box_at(look_number_)) >= p_.body.nested;
+    });
+    t.holds_several = t.kind == RegionKind::group || inside > 1;
+  }
+  used_.assign(bodies_.size(), 0);
+  match_look(true);
+  for (std::size_t j = 0; j < bodies_.size(); ++j)
+    if (bodies_[j].score >= kSure && !used_[j]) begin_at(bodies_[j]);
+  match_look(false);
+}
+
+void EvidenceTracker::mirror(EvidenceTrack& t, const Track& motion) const {
+  t.set_box(reduced(motion.box));
+  t.mirrors = true;
+  t.kind = motion.kind;
+  t.holds_several = t.holds_several || t.kind == RegionKind::group;
+  const double speed = std::hypot(motion.vx, motion.vy);
+  if (motion.state != TrackState::seen) {
+    t.fast = 0;
+    return;
+  }
+  t.fast = speed >= p_.fast * motion.box.height && inside_moves(t.box(), false) ? t.fast + frame_.seconds : 0;
+  t.since_motion = t.unseen = 0;
+}
+
+void EvidenceTracker::match_motion(std::span<const Track> motion) {
+  rows_.clear(), columns_.clear();
+  for (std::size_t i = 0; i < tracks_.size(); ++i)
+    if (!tracks_[i].hit && !tracks_[i].mirrors) rows_.push_back(i);
+  for (std::size_t j = 0; j < motion.size(); ++j)
+    if (!used_[j] && motion[j].state == TrackState::seen && motion[j].kind != RegionKind::group)
+      columns_.push_back(j);
+  if (rows_.empty() || columns_.empty()) return;
+  cost_.assign(rows_.size() * columns_.size(), Assignment::kForbidden);
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    for (std::size_t j = 0; j < columns_.size(); ++j) {
+      const double overlap =
+          intersection_over_union(tracks_[rows_[i]].box(), reduced(motion[columns_[j]].box));
+      if (overlap >= p_.gate) cost_[i * columns_.size() + j] = 1 - overlap;
+    }
+  const auto pairs =
+      assignment_.solve(cost_, static_cast<int>(rows_.size()), static_cast<int>(columns_.size()));
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (pairs[i] < 0) continue;
+    const std::size_t at = i * columns_.size() + static_cast<std::size_t>(pairs[i]);
+    if (cost_[at] >= Assignment::kForbidden) continue;
+    EvidenceTrack& t = tracks_[rows_[i]];
+    const Track& seen = motion[columns_[static_cast<std::size_t>(pairs[i])]];
+    t.motion_id = seen.id;
+    t.add(p_.region * frame_.seconds, p_);
+    t.since_motion = t.unseen = 0;
+    used_[columns_[static_cast<std::size_t>(pairs[i])]] = 1;
+    if (1 - cost_[at] >= p_.adopt) mirror(t, seen);
+  }
+}
+
+void EvidenceTracker::begin_mirror(const Track& motion) {
+  const Box box = reduced(motion.box);
+  const auto covers = [&](const EvidenceTrack& t) {
+    return intersection_over_union(box, t.box()) >= p_.apart ||
+           is_one_body(box, t.box(), {.same_window = p_.body.same_window, .nested = p_.apart});
+  };
+  if (std::ranges::any_of(tracks_, covers)) return;
+  EvidenceTrack t = EvidenceTrack::begin(box, number_);
+  const auto taken = [&](std::uint32_t id) {
+    return std::ranges::find(tracks_, id, &EvidenceTrack::id) != tracks_.end();
+  };
+  t.id = taken(motion.id) ? next_id_++ : motion.id;
+  t.evidence = p_.publish;
+  t.motion_id = motion.id;
+  const auto known = std::ranges::find(known_, motion.id, &Known::motion_id);
+  if (known != known_.end() && !taken(known->id))
+    t.id = known->id, t.person = known->person, t.published = known->published;
+  mirror(t, motion);
+  tracks_.push_back(t);
+}
+
+void EvidenceTracker::take_motion(std::span<const Track> motion) {
+  used_.assign(motion.size(), 0);
+  std::erase_if(tracks_, [&](EvidenceTrack& t) {
+    if (!t.mirrors) return false;
+    const auto found = std::ranges::find(motion, t.motion_id, &Track::id);
+    if (found == motion.end()) return true;
+    mirror(t, *found);
+    if (found->state == TrackState::seen) t.add(p_.region * frame_.seconds, p_);
+    used_[static_cast<std::size_t>(found - motion.begin())] = 1;
+    return false;
+  });
+  match_motion(motion);
+  for (std::size_t j = 0; j < motion.size(); ++j)
+    if (!used_[j]) begin_mirror(motion[j]);
+}
+
+// What the look says of tracks that it does not show, and what their own motion says.
+void EvidenceTracker::judge_look(const EvidenceLook& look) {
+  const bool calm = frame_.calm >= p_.calm;
+  const double seconds = std::min(look.seconds, 1.0);
+  for (EvidenceTrack& t : tracks_) {
+    const bool moving = inside_moves(t.box(), calm);
+    t.moved = t.moved || moving;
+    if (!t.hit) {
+      const bool shown = t.since_motion <= look.seconds;
+      if (!shown && t.was_there(look_number_)) t.evidence -= p_.missed;
+      t.quality += kQualityGain * ((shown ? kMotionQuality : kMissedQuality) - t.quality);
+    }
+    if (t.mirrors) continue;
+    if (moving)
+      t.add(p_.moving * seconds, p_);
+    else if (calm && !t.travels(p_.travel))
+      t.evidence -= p_.resting * seconds;
+  }
+}
+
+void EvidenceTracker::end_tracks() {
+  const Size picture = frame_.picture.size();
+  for (EvidenceTrack& t : tracks_) {
+    t.moved = t.moved || t.travels(p_.travel);
+    const bool alone = t.mirrors && (camera_stood_ >= kStillTime || t.fast >= p_.fast_time);
+    if (t.evidence >= p_.publish && (t.person || alone)) t.published = true;
+  }
+  std::erase_if(tracks_, [&](const EvidenceTrack& t) {
+    return (t.evidence < 0 && !t.mirrors) || t.height <= p_.least_height ||
+           visible_share(t.box(), picture) <= p_.least_visible;
+  });
+  const auto rank = [](const EvidenceTrack& t) { return t.quality + kAgeQuality * std::min(t.age, kOld); };
+  std::ranges::sort(tracks_, [&](const EvidenceTrack& a, const EvidenceTrack& b) {
+    if (a.published != b.published) return a.published;
+    return rank(a) != rank(b) ? rank(a) > rank(b) : a.id < b.id;
+  });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    const auto same = [&](const EvidenceTrack& other) {
+      if ((tracks_[i].mirrors && other.mirrors) || tracks_[i].holds_several || other.holds_several)
+        return false;
+      return intersection_over_union(tracks_[i].box(), other.box()) >= p_.same ||
+             is_one_body(tracks_[i].box(), other.box(), p_.body);
+    };
+    if (std::any_of(tracks_.begin(), tracks_.begin() + static_cast<std::ptrdiff_t>(kept), same)) continue;
+    if (kept != i) tracks_[kept] = tracks_[i];
+    ++kept;
+  }
+  tracks_.resize(kept);
+}
+
+void EvidenceTracker::remember_motion() {
+  for (EvidenceTrack& t : tracks_) {
+    t.keep(number_);
+    if (t.motion_id == 0 || t.since_motion > 0) continue;
+    auto known = std::ranges::find(known_, t.motion_id, &Known::motion_id);
+    if (known == known_.end()) {
+      if (known_.size() == kMostKnown) known_.erase(known_.begin());
+      known = known_.insert(known_.end(), Known{t.motion_id});
+    }
+    known->id = t.id, known->person = t.person, known->published = t.published;
+  }
+}
+
+void EvidenceTracker::publish(std::span<const Track> motion) {
+  results_.clear();
+  const double across = static_cast<double>(frame_.size.width) / frame_.picture.width;
+  const double down = static_cast<double>(frame_.size.height) / frame_.picture.height;
+  for (const EvidenceTrack& t : tracks_) {
+    if (!t.published || (!t.mirrors && t.unseen > p_.shown)) continue;
+    const auto stands_for = [&](const EvidenceTrack& other) {
+      return other.published && other.person && !other.holds_several &&
+             share_within(other.box(), t.box()) >= p_.body.nested;
+    };
+    if (t.holds_several && std::ranges::any_of(tracks_, stands_for)) continue;
+    const Box box = scaled(t.box(), across, down);
+    const double left = std::max(box.x, 0.0), top = std::max(box.y, 0.0);
+    const double right = std::min(box.right(), double(frame_.size.width));
+    const double bottom = std::min(box.bottom(), double(frame_.size.height));
+    if (right - left < 1 || bottom - top < 1) continue;
+    EvidenceResult r;
+    r.id = t.id;
+    r.box = {left, top, right - left, bottom - top};
+    r.velocity = {t.velocity.x * t.height * across, t.velocity.y * t.height * down};
+    r.age = t.age;
+    r.confidence = std::clamp(t.evidence / p_.ceiling, 0.0, 1.0);
+    r.person = t.person, r.moves = t.since_motion < 1, r.kind = t.kind;
+    r.state = t.hit || t.unseen == 0 ? TrackState::seen : TrackState::coasted;
+    if (t.mirrors) {
+      const auto found = std::ranges::find(motion, t.motion_id, &Track::id);
+      r.motion = static_cast<int>(found - motion.begin());
+      r.state = found->state;
+    }
+    results_.push_back(r);
+  }
+  std::ranges::sort(results_, {}, &EvidenceResult::id);
+}
+
+std::span<const EvidenceResult> EvidenceTracker::update(const EvidenceFrame& frame,
+                                                        std::span<const Track> motion,
+                                                        const std::optional<EvidenceLook>& look) {
+  if (frame.fresh || next_id_ == 0 || frame.picture.size() != pictures_[present_].size()) reset();
+  frame_ = frame;
+  present_ = 1 - present_, ++number_;
+  Image<std::uint8_t>& picture = pictures_[present_];
+  picture.resize(frame.picture.size());
+  for (int y = 0; y < frame.picture.height; ++y)
+    std::copy_n(frame.picture.row(y), frame.picture.width, picture.view().row(y));
+  pyramids_[present_].borrow(picture.view(), kLevels);
+  motion_ = frame.motion.rescaled(frame.size, picture.size());
+  since_look_ = motion_ * since_look_;
+  camera_stood_ = frame.still ? camera_stood_ + frame.seconds : 0;
+  for (EvidenceTrack& t : tracks_)
+    t.follow(number_ > 1 ? &pyramids_[1 - present_] : nullptr, pyramids_[present_], motion_, frame.seconds,
+             p_);
+  if (look && look_number_ > 0) take_look(*look);
+  if (frame.calm >= p_.calm)
+    take_motion(motion);
+  else
+    for (EvidenceTrack& t : tracks_) t.mirrors = t.holds_several = false;
+  if (look && look_number_ > 0) judge_look(*look);
+  end_tracks();
+  remember_motion();
+  publish(motion);
+  return results_;
+}
+
+std::size_t EvidenceTracker::bytes() const {
+  const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  return sizeof *this + of(tracks_) + of(known_) + of(results_) + of(bodies_) + of(cost_) + of(rows_) +
+         of(columns_) + of(used_) + assignment_.bytes() + pictures_[0].bytes() + pictures_[1].bytes() +
+         looked_.bytes() + pyramids_[0].bytes() + pyramids_[1].bytes() + looked_pyramid_.bytes();
+}
+
+}  // namespace cerberus::vision

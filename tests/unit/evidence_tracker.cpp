@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Tracks of which motion and a people detector are the witnesses, before painted walls and bodies.
+#include "vision/tracking/evidence/evidence_tracker.h"
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "support/allocations.h"
+#include "support/suite.h"
+#include "support/textures.h"
+
+using namespace cerberus::vision;
+using namespace cerberus::tests;
+
+namespace {
+
+constexpr Size kFrame{640, 480}, kSmall{320, 240};
+constexpr double kSeconds = 1.0 / 24;  // a frame
+constexpr int kLook = 6;               // frames from look to look: 4 a second
+constexpr double kSure = 2, kDoubtful = 0.6, kLikely = 0.75;
+constexpr std::uint32_t kFirstOwn = 1000001;
+
+// Frame pixels.
+Box body_at(double x) {
+  return {x, 120, 80, 240};
+}
+
+bool near(const Box& a, const Box& b, double pixels = 12) {
+  return std::abs(a.x - b.x) < pixels && std::abs(a.y - b.y) < pixels &&
+         std::abs(a.width - b.width) < pixels && std::abs(a.height - b.height) < pixels;
+}
+
+Track motion_track(std::uint32_t id, const Box& box, double vx = 0,
+                   RegionKind kind = RegionKind::person_like) {
+  Track track;
+  track.id = id, track.box = box, track.vx = vx, track.kind = kind;
+  return track;
+}
+
+class Scene {
+ public:
+  double calm = 1;
+  bool still = true;
+  double pan = 0;  // frame pixels a frame by which the wall moves
+
+  // Bodies at these columns of the frame. late: what the look at an earlier frame has shown.
+  std::span<const EvidenceResult> frame(const std::vector<double>& bodies,
+                                        const std::vector<Track>& motion = {},
+                                        const std::optional<std::vector<PersonDetection>>& late = {}) {
+    wall_ += pan / 2;
+    paint(picture_, all_of(kSmall), wall_, 0, 1);
+    for (const double x : bodies) {
+      const Box box = body_at(x);
+      paint(picture_, {box.x / 2, box.y / 2, box.width / 2, box.height / 2}, box.x / 2, box.y / 2, 5);
+    }
+    EvidenceFrame f;
+    f.seconds = kSeconds;
+    f.fresh = number_++ == 0;
+    f.size = kFrame;
+    f.picture = picture_.view();
+    f.motion = Transform::translation(pan, 0);
+    f.still = still, f.calm = calm;
+    std::optional<EvidenceLook> look;
+    if (late) look = EvidenceLook{*late, kLook * kSeconds};
+    return tracker.update(f, motion, look);
+  }
+  // Looks at the last frame; the result is there in the next one.
+  void look() { tracker.begin_look(); }
+
+  EvidenceTracker tracker;
+
+ private:
+  Image<std::uint8_t> picture_{kSmall};
+  double wall_ = 0;
+  int number_ = 0;
+};
+
+// A body that goes `step` pixels a frame, seen with this score at every look, whose results are `delay` frames late.
+// Returns what is published in each frame.
+std::vector<std::vector<EvidenceResult>> walk(Scene& scene, int frames, double step, double score,
+                                              int delay = 1, bool detected = true) {
+  std::vector<std::vector<EvidenceResult>> all;
+  std::vector<PersonDetection> seen;
+  int looked = -1;
+  for (int n = 0; n < frames; ++n) {
+    std::optional<std::vector<PersonDetection>> late;
+    if (looked >= 0 && n == looked + delay) late = seen, looked = -1;
+    const auto found = scene.frame({200 + step * n}, {}, late);
+    all.emplace_back(found.begin(), found.end());
+    if (n % kLook != 0) continue;
+    seen.clear();
+    if (detected) seen.push_back({body_at(200 + step * n), score});
+    scene.look();
+    looked = n;
+  }
+  return all;
+}
+
+}  // namespace
+
+START_TEST(who_is_seen_surely_is_published_after_two_looks_and_followed_between_them) {
+  for (const int delay : {1, 4}) {
+    Scene scene;
+    scene.calm = 0.4, scene.still = false;
+    const auto frames = walk(scene, 48, 4, kSure, delay);
+    int first = -1;
+    for (int n = 0; n < 48; ++n) {
+      if (frames[n].empty()) continue;
+      if (first < 0) first = n;
+      ck_assert_int_eq(frames[n].size(), 1);
+      ck_assert_uint_eq(frames[n][0].id, kFirstOwn);
+      ck_assert(frames[n][0].person && frames[n][0].motion < 0);
+      ck_assert_msg(near(frames[n][0].box, body_at(200 + 4 * n)), "delay %d, frame %d: at %.0f, not %.0f",
+                    delay, n, frames[n][0].box.x, 200.0 + 4 * n);
+    }
+    ck_assert_int_ge(first, kLook);
+    ck_assert_int_le(first, 2 * kLook + delay);
+    ck_assert_double_eq_tol(frames[47][0].velocity.x, 4 / kSeconds, 15);
+  }
+}
+END_TEST
+
+START_TEST(who_a_late_look_shows_is_where_the_camera_has_carried_him) {
+  Scene scene;
+  scene.calm = 0.4, scene.still = false, scene.pan = 12;  // 4 frames are more than the search for him reaches
+  const auto frames = walk(scene, 16, scene.pan, kSure, 4);
+  ck_assert_int_eq(frames.back().size(), 1);
+  ck_assert_msg(near(frames.back()[0].box, body_at(200 + 12 * 15)), "at %.0f", frames.back()[0].box.x);
+}
+END_TEST
+
+START_TEST(what_rests_and_is_seen_doubtfully_is_nobody) {
+  Scene scene;
+  for (const auto& found : walk(scene, 96, 0, kDoubtful)) ck_assert(found.empty());
+  Scene shaken;
+  shaken.calm = 0.4, shaken.still = false;
+  for (const auto& found : walk(shaken, 96, 0, kDoubtful)) ck_assert(found.empty());
+}
+END_TEST
+
+START_TEST(who_walks_needs_less_of_a_score_than_who_rests) {
+  Scene scene;
+  scene.calm = 0.4, scene.still = false;
+  ck_assert(!walk(scene, 72, 4, kLikely).back().empty());
+  Scene other;
+  other.calm = 0.4, other.still = false;
+  ck_assert(walk(other, 72, 0, kLikely).back().empty());
+}
+END_TEST
+
+START_TEST(a_person_whom_no_look_shows_any_more_ends) {
+  Scene scene;
+  scene.calm = 0.4, scene.still = false;
+  ck_assert(!walk(scene, 24, 0, kSure).back().empty());
+  ck_assert(walk(scene, 48, 0, kSure, 1, false).back().empty());
+  ck_assert(walk(scene, 3, 0, kSure).back().empty());  // and begins anew
+}
+END_TEST
+
+START_TEST(before_a_still_camera_a_motion_track_is_published_as_it_is) {
+  Scene scene;
+  for (int n = 0; n < 5; ++n) {
+    const Box box = body_at(200 + 4 * n);
+    const auto found = scene.frame({200.0 + 4 * n}, {motion_track(7, box)});
+    ck_assert_int_eq(found.size(), 1);
+    ck_assert_uint_eq(found[0].id, 7);
+    ck_assert(!found[0].person && found[0].moves && found[0].motion == 0);
+    ck_assert(near(found[0].box, box, 0.01));
+  }
+  ck_assert(scene.frame({}).empty());  // it ends with it
+}
+END_TEST
+
+START_TEST(before_a_moving_camera_motion_alone_must_be_fast_for_half_a_second) {
+  for (const double speed : {0.0, 240.0}) {  // a height a second
+    Scene scene;
+    scene.still = false, scene.pan = 2;
+    bool published = false;
+    for (int n = 0; n < 24; ++n) {
+      const double x = 200 + (speed * kSeconds + scene.pan) * n;
+      published = !scene.frame({x}, {motion_track(7, body_at(x), speed)}).empty();
+      ck_assert_msg(n > 10 || !published, "frame %d", n);
+    }
+    ck_assert(published == (speed > 0));
+  }
+}
+END_TEST
+
+START_TEST(in_a_shaken_scene_motion_tracks_are_no_witness) {
+  Scene scene;
+  scene.still = false, scene.calm = 0.4;
+  for (int n = 0; n < 48; ++n) {
+    const double x = 100 + 10.0 * n;
+    ck_assert(scene.frame({x}, {motion_track(7, body_at(x), 240)}).empty());
+  }
+}
+END_TEST
+
+START_TEST(a_look_makes_a_motion_track_a_person_and_leaves_its_box_and_identity) {
+  Scene scene;
+  const Box narrow{210, 130, 60, 220};
+  scene.frame({200}, {motion_track(7, narrow)});
+  scene.look();
+  const auto found =
+      scene.frame({200}, {motion_track(7, narrow)}, std::vector<PersonDetection>{{body_at(200), kSure}});
+  ck_assert_int_eq(found.size(), 1);
+  ck_assert(found[0].person && found[0].id == 7);
+  ck_assert(near(found[0].box, narrow, 0.01));
+}
+END_TEST
+
+START_TEST(a_group_is_replaced_by_the_people_in_it) {
+  Scene scene;
+  const Track both = motion_track(7, {195, 115, 180, 250}, 0, RegionKind::group);
+  const std::vector<PersonDetection> two{{body_at(200), kSure}, {body_at(290), kSure}};
+  for (int n = 0; n < 25; ++n) {
+    const bool looked = n % kLook == 1;
+    const auto found = scene.frame({200, 290}, {both}, looked ? std::optional(two) : std::nullopt);
+    if (n % kLook == 0) scene.look();
+    if (n == 0) ck_assert(found.size() == 1 && found[0].id == 7 && found[0].kind == RegionKind::group);
+    if (n < 24) continue;
+    ck_assert_int_eq(found.size(), 2);
+    ck_assert(found[0].person && found[1].person && found[0].id != found[1].id);
+    ck_assert(near(found[0].box, body_at(200)) && near(found[1].box, body_at(290)));
+  }
+}
+END_TEST
+
+START_TEST(an_identity_that_motion_gives_back_is_the_persons_again) {
+  Scene scene;
+  const auto frames = walk(scene, 24, 4, kSure);
+  ck_assert(!frames.back().empty());
+  const std::uint32_t id = frames.back()[0].id;
+  const Box box = body_at(292);
+  scene.frame({292}, {motion_track(3, box)});  // takes the place of the person's
+  scene.frame({292}, {});                      // ends with it
+  const auto found = scene.frame({292}, {motion_track(3, box)});
+  ck_assert_int_eq(found.size(), 1);
+  ck_assert(found[0].id == id && found[0].person);
+}
+END_TEST
+
+START_TEST(after_a_reset_nothing_is_known_and_no_identity_is_given_twice) {
+  Scene scene;
+  ck_assert(!walk(scene, 24, 4, kSure).back().empty());
+  scene.tracker.reset();
+  ck_assert(scene.frame({300}).empty());
+  const auto found = walk(scene, 24, 4, kSure).back();
+  ck_assert(!found.empty() && found[0].id != kFirstOwn);
+}
+END_TEST
+
+START_TEST(the_steady_state_allocates_nothing) {
+  Scene scene;
+  const std::vector<Track> motion{motion_track(7, body_at(400)), motion_track(8, body_at(100))};
+  std::vector<PersonDetection> bodies{{body_at(400), kSure}, {body_at(250), kSure}};
+  const auto run = [&](int frames) {
+    for (int n = 0; n < frames; ++n) {
+      scene.frame({400, 250, 100}, motion, n % kLook == 1 ? std::optional(bodies) : std::nullopt);
+      if (n % kLook == 0) scene.look();
+    }
+  };
+  run(24);
+  const std::size_t bytes = scene.tracker.bytes();
+  EvidenceFrame f;
+  Image<std::uint8_t> picture(kSmall);
+  f.seconds = kSeconds, f.size = kFrame, f.picture = picture.view();
+  const auto before = allocations();
+  for (int n = 0; n < 24; ++n) {
+    if (n % kLook == 1)
+      scene.tracker.update(f, motion, EvidenceLook{bodies});
+    else
+      scene.tracker.update(f, motion);
+    if (n % kLook == 0) scene.tracker.begin_look();
+  }
+  ck_assert_uint_eq(allocations(), before);
+  ck_assert_uint_eq(scene.tracker.bytes(), bytes);
+}
+END_TEST
+
+int main() {
+  return run_suite(
+      "evidence_tracker",
+      {who_is_seen_surely_is_published_after_two_looks_and_followed_between_them,
+       who_a_late_look_shows_is_where_the_camera_has_carried_him, what_rests_and_is_seen_doubtfully_is_nobody,
+       who_walks_needs_less_of_a_score_than_who_rests, a_person_whom_no_look_shows_any_more_ends,
+       before_a_still_camera_a_motion_track_is_published_as_it_is,
+       before_a_moving_camera_motion_alone_must_be_fast_for_half_a_second,
+       in_a_shaken_scene_motion_tracks_are_no_witness,
+       a_look_makes_a_motion_track_a_person_and_leaves_its_box_and_identity,
+       a_group_is_replaced_by_the_people_in_it, an_identity_that_motion_gives_back_is_the_persons_again,
+       after_a_reset_nothing_is_known_and_no_identity_is_given_twice, the_steady_state_allocates_nothing});
+}
