@@ -170,7 +170,8 @@ Analyser::Outcome Detection::analyse(Frame& frame) {
   if (has(Stage::tracks)) {
     if (known) read_regions(frame.buffer);
     state.detector.track(*record, frame, known ? state.found : record->regions->regions);
-    publish_calm(frame.buffer, *record);
+    state.calm = record->camera ? std::optional(record->camera->calm) : std::nullopt;
+    publish_calm(frame.buffer);
     publish_tracks(frame.buffer, *record);
     complain_of_scene(frame.seconds);
     watch(frame, frame.seconds > 0 ? std::max(frame.seconds - state.repeated, 1e-9) : 0);
@@ -204,22 +205,24 @@ void Detection::repeat(Frame& frame) {
     return !vision::outlasts(static_cast<vision::TrackState>(region.state), frame.seconds,
                              state.options.tracks);
   });
-  if (has(Stage::tracks))
+  if (has(Stage::tracks)) {
+    publish_calm(frame.buffer);
     for (CerberusRegion& region : state.published) region.age += clock_time(step);
+  }
   attach_published(frame.buffer);
   if (has(Stage::tracks)) watch(frame, step);
 }
 
 // The camera's motion is on the frame already; how calm the scene is the tracker alone knows.
-void Detection::publish_calm(GstBuffer* buffer, const vision::Analysis& record) {
+void Detection::publish_calm(GstBuffer* buffer) const {
   const CerberusCameraMotion* attached = cerberus_buffer_peek_camera_motion(buffer);
-  if (!attached || !record.camera) return;
+  if (!attached || !state_->calm) return;
   CerberusCameraMotion motion = *attached;
-  motion.calm = record.camera->calm;
+  motion.calm = *state_->calm;
   cerberus_buffer_set_camera_motion(buffer, &motion);
 }
 
-// Once a stream, after tracks have been withheld for a second: of fewer nobody misses anything.
+// Once a stream, and only after tracks have been withheld for a second: shorter gaps are hardly seen.
 void Detection::complain_of_scene(double seconds) {
   constexpr double kLong = 1;
   State& state = *state_;

@@ -55,6 +55,7 @@ class Detection : public Analyser {
     std::vector<vision::Region> found;  // by another element upstream
     std::vector<CerberusRegion> published;
     CerberusCameraMotion motion{};                          // of the last picture
+    std::optional<double> calm;                             // likewise, where this element knows it
     std::optional<ThresholdFacts> facts;                    // likewise
     std::optional<std::vector<vision::Box>> sent_burnt_in;  // upstream; none: nothing yet
     double repeated = 0;                                    // seconds for which it has been repeated
@@ -83,7 +84,7 @@ class Detection : public Analyser {
   std::string why_no_regions(vision::Size frame, vision::Size mask);
   std::string why_no_tracks() const;
   void watch(const Frame& frame, double step);
-  static void publish_calm(GstBuffer* buffer, const vision::Analysis& record);
+  void publish_calm(GstBuffer* buffer) const;
   void complain_of_scene(double seconds);
 
   const vision::Stage first_, last_;
