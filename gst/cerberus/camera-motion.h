@@ -39,7 +39,7 @@ typedef struct _CerberusCameraMotion {
   gdouble calm;
 
   /*< private >*/
-  gpointer _cerberus_reserved[GST_PADDING];
+  gpointer _cerberus_reserved[GST_PADDING - 1];
 } CerberusCameraMotion;
 
 #define CERBERUS_TYPE_CAMERA_MOTION (cerberus_camera_motion_get_type())
