@@ -612,6 +612,21 @@ START_TEST(in_clutter_ghosts_are_not_searched) {
 }
 END_TEST
 
+// Six streaks a frame, each time elsewhere, before a camera that then moves for some frames and stands again.
+START_TEST(what_has_flashed_before_the_camera_moved_is_forgotten) {
+  for (const int moved : {0, 2, 3, 10}) {
+    Scene s(255);
+    for (int k = 0; k <= 25 + moved; ++k) {
+      s.mask.fill_bytes(0);
+      for (int i = 0; i < 6; ++i) s.differs({10 + 50 * i + 10 * (k % 4), 20, 4, 20}, 0);
+      s.classify(k < 25 || k == 25 + moved);
+    }
+    const bool forgotten = moved >= 3;
+    ck_assert_msg((count(s.mask, {0, 20, kSize.width, 20}) > 0) == forgotten, "%d", moved);
+  }
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "components", {windows_are_times_not_frames,
@@ -643,5 +658,6 @@ int main() {
                      a_tiny_component_is_dropped_over_a_young_background,
                      a_small_component_beside_a_leaving_object_is_a_fragment_of_its_ghost,
                      a_fragment_of_a_ghost_is_absorbed,
-                     in_clutter_ghosts_are_not_searched});
+                     in_clutter_ghosts_are_not_searched,
+                     what_has_flashed_before_the_camera_moved_is_forgotten});
 }

@@ -211,7 +211,10 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
   const auto components = labeller_.components();
   found_ = components.size();
   evidence_.assign(components.size(), {});
-  if (!input.still && ++moved_ == kParameters.shake) origins_.reset();
+  if (!input.still && ++moved_ == kParameters.shake) {
+    origins_.reset();
+    flashes_.reset();
+  }
   measure(input, windows, mask);
   for (std::size_t i = 0; i < components.size(); ++i) decide(input, components[i], evidence_[i]);
   if (input.is_aligned() && input.mechanisms.sides_go_on) doubt_edges(input, mask);
