@@ -40,7 +40,8 @@ void LifeCycle::leave(TrackHypothesis& t, const CameraOrientation& camera) {
 void LifeCycle::walk_out(TrackHypothesis& t, const CameraOrientation& camera) {
   const Box part = t.box();
   const double end = camera.lens.frame().width, margin = t.parameters->border * t.size();
-  const bool left = part.x<margin, right = part.right()> end - margin;
+  const bool left = part.x < margin;
+  const bool right = end - part.right() < margin;
   leave(t, camera);
   if (left && !right) t.x.position = std::min(t.x.position, -t.width() / 2);
   if (right && !left) t.x.position = std::max(t.x.position, end + t.width() / 2);
