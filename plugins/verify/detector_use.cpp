@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "detector_use.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "hog_detector.hpp"
@@ -26,8 +27,9 @@ const DetectorUse& use_of(DetectorKind kind) {
 }
 
 std::unique_ptr<vision::WholeFrameDetector> make_whole_frame_detector(DetectorKind kind, ModelSettings model,
-                                                                      std::string& wrong, int lines) {
-  const double least = use_of(kind).least;
+                                                                      std::string& wrong, int lines,
+                                                                      double threshold) {
+  const double least = std::min(use_of(kind).least, threshold);
   if (kind == DetectorKind::model) {
     model.threshold = least;
     auto detector = make_model_detector(model, wrong);

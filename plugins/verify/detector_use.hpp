@@ -2,6 +2,7 @@
 // The detectors that the element offers.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -28,11 +29,11 @@ inline double evidence_score(double score, double threshold, const DetectorUse& 
 // Lines of a whole frame that a detector with a window scans. Chosen: 45 to 70 ms a look; 720 lines take a core at 4 looks a
 // second.
 constexpr int kWholeFrameLines = 480;
-// A detector of whole frames, with one box a body, down to use_of(kind).least. model: of DetectorKind::model, with any
-// threshold. lines: of a detector with a window. Where the detector cannot be used, returns nullptr, and in `wrong` a
-// sentence that says why.
-std::unique_ptr<vision::WholeFrameDetector> make_whole_frame_detector(DetectorKind kind, ModelSettings model,
-                                                                      std::string& wrong,
-                                                                      int lines = kWholeFrameLines);
+// A detector of whole frames, with one box a body, down to use_of(kind).least, or to `threshold` where that is lower. model:
+// of DetectorKind::model, with any threshold. lines: of a detector with a window. Where the detector cannot be used, returns
+// nullptr, and in `wrong` a sentence that says why.
+std::unique_ptr<vision::WholeFrameDetector> make_whole_frame_detector(
+    DetectorKind kind, ModelSettings model, std::string& wrong, int lines = kWholeFrameLines,
+    double threshold = std::numeric_limits<double>::infinity());
 
 }  // namespace cerberus::plugin

@@ -268,7 +268,7 @@ gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
                                                      .labels = settings.labels,
                                                      .mean = settings.mean,
                                                      .scale = settings.scale},
-                                                    wrong);
+                                                    wrong, cerberus::plugin::kWholeFrameLines, state.threshold);
     if (!detector) {
       refuse_model(transform, wrong);
       return FALSE;

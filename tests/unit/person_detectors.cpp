@@ -144,6 +144,26 @@ START_TEST(darknet_boxes_are_found_down_to_the_threshold) {
 }
 END_TEST
 
+START_TEST(a_threshold_below_what_is_of_use_by_default_finds_fainter_bodies) {
+  const Files files;
+  const std::vector<tests::darknet::Anchor> faint{{16, 60, 2.2f, {-2}}};  // .11
+  plugin::ModelSettings settings;
+  settings.model = files.write("net.weights", tests::darknet::weights(kSide, faint));
+  files.write("net.cfg", tests::darknet::cfg(kSide, faint));
+  Image<std::uint8_t> frame({kSide, kSide});
+  tests::fill(frame.view(), 0, 0, kSide, kSide, 0);
+  for (const double threshold : {.05, .15, .55}) {
+    std::string wrong;
+    const auto detector = plugin::make_whole_frame_detector(plugin::DetectorKind::model, settings, wrong,
+                                                            plugin::kWholeFrameLines, threshold);
+    ck_assert_msg(detector != nullptr, "%s", wrong.c_str());
+    std::vector<PersonDetection> bodies;
+    ck_assert(!detector->find(GrayView(frame.view()), bodies));
+    ck_assert_uint_eq(bodies.size(), threshold < .11 ? 1 : 0);
+  }
+}
+END_TEST
+
 START_TEST(files_of_darknet_that_do_not_fit_are_refused_by_name) {
   const Files files;
   const std::string weights = tests::darknet::weights(kSide, anchors());
@@ -249,13 +269,14 @@ START_TEST(published_networks_can_be_used) {
 END_TEST
 
 int main() {
-  return tests::run_suite(
-      "person_detectors",
-      {histograms_of_gradients_find_the_bodies_of_a_whole_frame,
-       a_picture_smaller_than_the_window_has_no_hits,
-       darknet_weights_are_read_with_the_configuration_beside_them, the_configuration_may_be_named,
-       darknet_boxes_are_found_down_to_the_threshold, files_of_darknet_that_do_not_fit_are_refused_by_name,
-       mean_and_scale_replace_what_the_layout_says_of_the_input,
-       colours_reach_the_planes_of_the_network_in_their_order, nanodet_is_read_from_an_onnx_file,
-       published_networks_can_be_used});
+  return tests::run_suite("person_detectors",
+                          {histograms_of_gradients_find_the_bodies_of_a_whole_frame,
+                           a_picture_smaller_than_the_window_has_no_hits,
+                           darknet_weights_are_read_with_the_configuration_beside_them,
+                           the_configuration_may_be_named, darknet_boxes_are_found_down_to_the_threshold,
+                           a_threshold_below_what_is_of_use_by_default_finds_fainter_bodies,
+                           files_of_darknet_that_do_not_fit_are_refused_by_name,
+                           mean_and_scale_replace_what_the_layout_says_of_the_input,
+                           colours_reach_the_planes_of_the_network_in_their_order,
+                           nanodet_is_read_from_an_onnx_file, published_networks_can_be_used});
 }
