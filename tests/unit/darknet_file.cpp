@@ -64,6 +64,10 @@ START_TEST(weights_are_counted_through_the_layers) {
   ck_assert(weights_of(two + "[route]\nlayers = -1, 0\n[convolutional]\nfilters=1\n") == 32 + 36 + 12 + 1);
   ck_assert(weights_of(two + "[route]\nlayers=-2\ngroups=2\n[convolutional]\nfilters=1\n") ==
             32 + 36 + 4 + 1);
+  // The largest layer: 2^16 planes, as many filters of 2^6 x 2^6, and the layer before.
+  const std::string most = "[convolutional]\nfilters=65536\n";
+  ck_assert(weights_of(most + most + "size=64\n") ==
+            (3 + 1) * std::uint64_t{1 << 16} + (std::uint64_t{1} << 44) + (1 << 16));
   ck_assert(!weights_of("[connected]\noutput=5\n"));
 }
 END_TEST
@@ -78,6 +82,8 @@ START_TEST(what_is_no_configuration_of_a_detector_is_refused_with_the_reason) {
   expect_refused("[net]\nwidth=8\nheight=8\nchannels=1\n" + kYolo, "three planes");
   expect_refused(kNet + "[convolutional]\nfilters=18\n", "no [yolo] layer");
   expect_refused(kNet + "[convolutional]\nfilters=x\n" + kYolo, "its layer 0 has no usable filters");
+  for (const char* wrong : {"size=65", "size=65536", "size=0", "size=-3", "filters=65537", "groups=0"})
+    expect_refused(kNet + "[convolutional]\n" + wrong + "\n" + kYolo, "its layer 0 has no usable filters");
   expect_refused(kNet + "[convolutional]\nfilters=4\ngroups=2\n" + kYolo, "groups that do not divide");
   expect_refused(kNet + "[convolutional]\nfilters=4\n[route]\nlayers=-2\n" + kYolo,
                  "its layer 1 names a layer");
@@ -102,6 +108,10 @@ END_TEST
 START_TEST(a_threshold_is_written_into_each_yolo_layer) {
   const std::string cfg = darknet_cfg_with_threshold("[net]\n [yolo]\r\nclasses=1\n[yolo]", .05);
   ck_assert_str_eq(cfg.c_str(), "[net]\n [yolo]\r\nthresh=0.05\nclasses=1\n[yolo]\nthresh=0.05\n");
+  // Instead of the layer's own, wherever that stands; what other layers name so stays.
+  const std::string instead = darknet_cfg_with_threshold(
+      "[net]\nthresh=1\n[yolo]\nthresh = .7\r\nnum=1\n thresh=.8\n[a]\nthresh=2\n", .05);
+  ck_assert_str_eq(instead.c_str(), "[net]\nthresh=1\n[yolo]\nthresh=0.05\nnum=1\n[a]\nthresh=2\n");
 }
 END_TEST
 

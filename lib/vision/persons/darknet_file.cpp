@@ -16,8 +16,9 @@ namespace {
 
 constexpr int kLargestSide = 8192;  // of a picture, pixels
 constexpr int kPlanes = 3;
-// Of a layer's filters, kernel and groups. Chosen: beyond every network, and products stay far below 2^64.
-constexpr int kLargestCount = 1 << 16;
+// Of a layer's planes, filters and groups, and of a kernel's side. Chosen: beyond every network, and a layer has no more than
+// 2^44 weights.
+constexpr int kLargestCount = 1 << 16, kLargestKernel = 1 << 6;
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r");
@@ -89,8 +90,9 @@ class Layers {
     if (layer.name == "convolutional") {
       const int filters = layer.number("filters", 1), size = layer.number("size", 1),
                 groups = layer.number("groups", 1);
-      for (const int each : {filters, size, groups})
+      for (const int each : {filters, groups})
         if (each < 1 || each > kLargestCount) return said("has no usable filters, size or groups");
+      if (size < 1 || size > kLargestKernel) return said("has no usable filters, size or groups");
       if (planes % groups != 0) return said("has groups that do not divide its planes");
       const auto of_filters = static_cast<std::uint64_t>(filters);
       // The kernels, a bias, and the scale, mean and variance of a normalisation.
@@ -178,13 +180,18 @@ std::optional<DarknetNetwork> read_darknet_cfg(std::string_view cfg, std::string
 
 std::string darknet_cfg_with_threshold(std::string_view cfg, double threshold) {
   std::string changed;
+  bool yolo = false;
   while (!cfg.empty()) {
     const std::size_t end = std::min(cfg.find('\n'), cfg.size());
     const std::string_view line = cfg.substr(0, end);
     cfg.remove_prefix(std::min(end + 1, cfg.size()));
+    const std::string_view read = trimmed(line);
+    const bool begins = read.starts_with('[');
+    if (begins) yolo = read == "[yolo]";
+    // Of two lines the last would count.
+    if (yolo && trimmed(read.substr(0, read.find('='))) == "thresh") continue;
     changed.append(line).append("\n");
-    if (trimmed(line) == "[yolo]")
-      changed.append("thresh=").append(text::exact(threshold).string_view()).append("\n");
+    if (begins && yolo) changed.append("thresh=").append(text::exact(threshold).string_view()).append("\n");
   }
   return changed;
 }
