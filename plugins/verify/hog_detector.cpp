@@ -34,7 +34,6 @@ class HogDetector : public vision::PersonDetector {
     // OpenCV's Mat takes no constant data; nothing writes through this one.
     const cv::Mat given(picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.data),
                         static_cast<std::size_t>(picture.stride));
-    scale *= scan_.enlargement;
     const cv::Size size(static_cast<int>(std::lround(scale * picture.width)),
                         static_cast<int>(std::lround(scale * picture.height)));
     const cv::Size padding(scan_.padding, scan_.padding);
@@ -49,9 +48,7 @@ class HogDetector : public vision::PersonDetector {
     const double sy = static_cast<double>(picture.height) / enlarged_.rows;
     for (std::size_t i = 0; i < windows_.size(); ++i) {
       const cv::Rect& w = windows_[i];
-      hits.push_back({vision::core_of({sx * w.x, sy * w.y, sx * w.width, sy * w.height}, scan_.share.width,
-                                      scan_.share.height),
-                      scores_[i]});
+      hits.push_back({{sx * w.x, sy * w.y, sx * w.width, sy * w.height}, scores_[i]});
     }
     return std::nullopt;
   }

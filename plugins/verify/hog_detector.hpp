@@ -23,10 +23,6 @@ struct HogScan {
   double scale_step = 1.07;
   // Pixels around the picture that windows reach, a multiple of 8: a window is wider and higher than the person in it.
   int padding = 16;
-  // Of the picture beyond the scale that is asked for, which suits a body as high as Daimler's.
-  double enlargement = 1;
-  // The part of the window that becomes a hit's box.
-  vision::BodyShare share{};
 };
 
 std::unique_ptr<vision::PersonDetector> make_hog_detector(HogWeights weights, const HogScan& scan);
