@@ -18,7 +18,7 @@ namespace cerberus::vision {
 class Flashes {
  public:
   void preallocate(Size picture, std::size_t components);
-  // The scene is new.
+  // The scene is new, or the camera has moved.
   void reset();
   // mask: where the frame, of this size, differs from the background, and its components. seconds: from frame to frame.
   void find(Size picture, BitView mask, std::span<const Component> components, std::span<const Run> runs,
