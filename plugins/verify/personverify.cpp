@@ -92,6 +92,7 @@
 #include "cerberus/private/element.hpp"
 #include "detector_use.hpp"
 #include "model_path.hpp"
+#include "shared/camera_path.hpp"
 #include "shared/clock_times.hpp"
 #include "shared/complaint.hpp"
 #include "shared/properties.hpp"
@@ -203,6 +204,8 @@ struct State {  // streaming thread only
   vision::LumaStretch stretch;
   vision::LumaScaler scaler;
   vision::Image<std::uint8_t> picture;
+  vision::CameraFollower camera;
+  GstClockTime running = GST_CLOCK_TIME_NONE;  // of the last frame
   vision::EvidenceTracker tracker;
   vision::LookWorker worker;
   GstClockTime looked = GST_CLOCK_TIME_NONE;         // time of the frame of the look in progress
@@ -211,11 +214,11 @@ struct State {  // streaming thread only
   std::optional<bool> live;
   vision::FrameHistory history{vision::FrameHistory::Parameters{.gap_seconds = kLongestGap}};
   GstClockTime last = GST_CLOCK_TIME_NONE, next_look = GST_CLOCK_TIME_NONE;
-  std::vector<vision::Track> motion, foreign_before;  // of this frame; of other elements, of the one before
-  std::vector<CerberusRegion> before, after;          // regions of the frame, and what is published
-  std::uint32_t last_foreign = 0;                     // identities of theirs given so far
-  bool foreign = false;                               // they are other elements' regions of interest
-  cerberus::plugin::DetectorUse use;                  // of the detector in the worker
+  std::vector<vision::Track> motion, motion_before;  // of this frame, and of the one before
+  std::vector<CerberusRegion> before, after;         // regions of the frame, and what is published
+  std::uint32_t last_untracked = 0;                  // identities given to regions without one so far
+  bool foreign = false;                              // they are other elements' regions of interest
+  cerberus::plugin::DetectorUse use;                 // of the detector in the worker
   double threshold = 0;
   cerberus::plugin::Complaint caps, frame;
 };
@@ -228,10 +231,16 @@ struct Private {
 CERBERUS_DEFINE_TYPE(CerberusPersonVerify, cerberus_person_verify, GstBaseTransform, GST_TYPE_BASE_TRANSFORM,
                      Private)
 
-void forget(State& state) {
+// The result of a look in progress is of another scene.
+void drop_look(State& state) {
   if (GST_CLOCK_TIME_IS_VALID(state.looked)) state.worker.wait();
   state.looked = state.looked_before = GST_CLOCK_TIME_NONE;
+}
+
+void forget(State& state) {
+  drop_look(state);
   state.tracker.reset();
+  state.camera.forget();
   state.stretch.reset();
   state.last = state.next_look = GST_CLOCK_TIME_NONE;
 }
@@ -312,7 +321,7 @@ gboolean cerberus_person_verify_sink_event(GstBaseTransform* transform, GstEvent
 
 vision::Track track_of(const CerberusRegion& region) {
   vision::Track track;
-  track.id = region.id;
+  track.id = region.tracked ? region.id : 0;
   track.box = {region.x, region.y, region.width, region.height};
   track.vx = region.vx, track.vy = region.vy;
   track.state = static_cast<vision::TrackState>(region.state);
@@ -320,10 +329,8 @@ vision::Track track_of(const CerberusRegion& region) {
   return track;
 }
 
-// Regions of interest of other elements, with identities that they keep from frame to frame.
+// Regions of interest of other elements.
 void read_foreign(State& state, GstBuffer* buffer) {
-  std::swap(state.motion, state.foreign_before);
-  state.motion.clear(), state.before.clear();
   gpointer iterator = nullptr;
   while (GstMeta* meta = gst_buffer_iterate_meta_filtered(buffer, &iterator,
                                                           GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE)) {
@@ -331,23 +338,24 @@ void read_foreign(State& state, GstBuffer* buffer) {
     CerberusRegion region;
     cerberus_region_init(&region);
     region.x = roi->x, region.y = roi->y, region.width = roi->w, region.height = roi->h;
-    region.tracked = TRUE;
     state.before.push_back(region);
-    state.motion.push_back(track_of(region));
   }
-  vision::keep_identities(state.foreign_before, state.motion, state.last_foreign);
-  for (std::size_t i = 0; i < state.before.size(); ++i) state.before[i].id = state.motion[i].id;
 }
 
+// What is not tracked gets identities that it keeps from frame to frame.
 void read_regions(State& state, GstBuffer* buffer) {
-  state.foreign = !cerberus_buffer_regions_known(buffer);
-  if (state.foreign) return read_foreign(state, buffer);
+  std::swap(state.motion, state.motion_before);
   state.before.clear(), state.motion.clear();
-  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
-  for (guint i = 0; i < regions->len; ++i) {
-    state.before.push_back(*static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i)));
-    state.motion.push_back(track_of(state.before.back()));
+  state.foreign = !cerberus_buffer_regions_known(buffer);
+  if (state.foreign) {
+    read_foreign(state, buffer);
+  } else {
+    g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
+    for (guint i = 0; i < regions->len; ++i)
+      state.before.push_back(*static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i)));
   }
+  for (const CerberusRegion& region : state.before) state.motion.push_back(track_of(region));
+  vision::keep_identities(state.motion_before, state.motion, state.last_untracked);
 }
 
 void attach(State& state, GstBuffer* buffer, std::span<const vision::EvidenceResult> results,
@@ -413,14 +421,12 @@ void look(State& state, const vision::PictureSource& source, vision::Size size, 
   if (!GST_CLOCK_TIME_IS_VALID(state.next_look))
     state.next_look = now + static_cast<GstClockTime>(settings.phase * static_cast<double>(period));
   if (GST_CLOCK_TIME_IS_VALID(state.looked) || now < state.next_look) return;
+  const auto taken = static_cast<double>(state.worker.duration().count());  // by the last one
   state.worker.picture().take(source, 0, 0, size, state.worker.sees_colours());
   state.worker.begin();
   state.tracker.begin_look();
   state.looked = now;
-  if (state.live.value_or(true)) {
-    const auto taken = static_cast<double>(state.worker.duration().count());
-    period = std::max(period, static_cast<GstClockTime>(taken / settings.cpu));
-  }
+  if (state.live.value_or(true)) period = std::max(period, static_cast<GstClockTime>(taken / settings.cpu));
   // On the beat, unless a look took longer than that.
   state.next_look = (now - state.next_look > period / 2 ? now : state.next_look) + period;
 }
@@ -444,6 +450,12 @@ GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, G
         vision::clock_confirms(*time, state.history.previous(), cerberus::plugin::clock_now(transform));
     const vision::FrameHistory::Step step = state.history.next(time, kUsualStep, false, confirmed);
     if (step.fresh) forget(state);
+    const vision::Size size{GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)};
+    using Link = vision::CameraFollower::Link;
+    const vision::CameraFollower::Step camera =
+        state.camera.next(cerberus::plugin::path_point(buffer), std::exchange(state.running, stamp), size);
+    const bool cut = !step.fresh && (camera.link == Link::cut || camera.link == Link::lost);
+    if (cut) state.tracker.reset(), drop_look(state);
     const double seconds = step.seconds > 0 ? step.seconds : kUsualStep;
     GstClockTime now = cerberus::plugin::clock_time(step.time);
     const bool known = GST_CLOCK_TIME_IS_VALID(now), before = GST_CLOCK_TIME_IS_VALID(state.last);
@@ -451,22 +463,18 @@ GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, G
     if (!before && !known) now = 0;
     state.last = now;
 
-    const vision::Size size{GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)};
     vision::PictureSource source = cerberus::picture_source(*frame.get());
     source.luma = state.stretch.stretched(source.luma);
     state.scaler.scale(source.luma, state.picture.view());
     vision::EvidenceFrame seen;
     seen.seconds = seconds;
-    seen.fresh = step.fresh;
+    seen.fresh = step.fresh || cut;
     seen.size = size;
     seen.picture = state.picture.view();
-    if (const CerberusCameraMotion* camera = cerberus_buffer_peek_camera_motion(buffer)) {
-      std::copy_n(camera->matrix, seen.motion.m.size(), seen.motion.m.begin());
-      seen.still = camera->still;
-      seen.calm = camera->calm;
-    } else {
-      seen.still = true;  // what moves is other elements' to say
-    }
+    seen.motion = camera.motion.transform;
+    seen.still = camera.motion.still;  // also where nothing upstream measures it
+    if (const CerberusCameraMotion* measured = cerberus_buffer_peek_camera_motion(buffer))
+      seen.calm = measured->calm;
     read_regions(state, buffer);
     std::optional<std::string> refusal;
     const auto looked = take_in(state, now, refusal);

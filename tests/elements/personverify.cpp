@@ -75,16 +75,17 @@ struct Verifier {
   }
 };
 
-// The regions after `frames` frames of a scene that moves to the right by a pixel a frame.
+// The regions after `frames` frames of a scene that moves to the right by `step` pixels a frame.
 std::vector<CerberusRegion> regions_after(Verifier& verifier, int frames, const std::vector<double>& people,
-                                          bool thing, const std::vector<CerberusRegion>& tracks) {
+                                          bool thing, const std::vector<CerberusRegion>& tracks,
+                                          int step = 1) {
   std::vector<CerberusRegion> found;
   for (int n = 0; n < frames; ++n) {
     std::vector<double> moved = people;
-    for (double& x : moved) x += n;
+    for (double& x : moved) x += step * n;
     GstBuffer* in = scene(n, moved, thing);
     for (CerberusRegion track : tracks) {
-      track.x += n;
+      track.x += step * n;
       add(in, track);
     }
     GstBuffer* out = verifier.through(in);
@@ -136,10 +137,10 @@ GST_START_TEST(a_track_that_holds_two_people_becomes_two_persons) {
   Verifier verifier("");
   CerberusRegion both = region(5, 100, 88, 105, 104);
   both.kind = CERBERUS_REGION_KIND_GROUP;
-  const auto found = regions_after(verifier, 24, {100, 165}, false, {both});
+  const auto found = regions_after(verifier, 24, {100, 165}, false, {both}, 2);
   fail_unless_equals_int(found.size(), 2);
-  expect_place(found[0], 123);
-  expect_place(found[1], 188);
+  expect_place(found[0], 146);
+  expect_place(found[1], 211);
   fail_unless(found[0].person && found[1].person && found[0].id != found[1].id);
   fail_unless(found[0].id != 5 && found[1].id != 5);
 }
@@ -168,7 +169,7 @@ GST_START_TEST(two_runs_give_the_same_regions) {
     Verifier verifier("rate=10");
     CerberusRegion both = region(5, 100, 88, 105, 104);
     both.kind = CERBERUS_REGION_KIND_GROUP;
-    run = regions_after(verifier, 24, {100, 165}, false, {both});
+    run = regions_after(verifier, 24, {100, 165}, false, {both}, 2);
   }
   fail_unless(runs[0].size() == 2 && runs[1].size() == 2);
   for (std::size_t i = 0; i < 2; ++i) {

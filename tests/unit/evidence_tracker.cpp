@@ -47,7 +47,8 @@ class Scene {
   // Bodies at these columns of the frame. late: what the look at an earlier frame has shown.
   std::span<const EvidenceResult> frame(const std::vector<double>& bodies,
                                         const std::vector<Track>& motion = {},
-                                        const std::optional<std::vector<PersonDetection>>& late = {}) {
+                                        const std::optional<std::vector<PersonDetection>>& late = {},
+                                        double period = kLook * kSeconds) {
     wall_ += pan / 2;
     paint(picture_, all_of(kSmall), wall_, 0, 1);
     for (const double x : bodies) {
@@ -62,7 +63,7 @@ class Scene {
     f.motion = Transform::translation(pan, 0);
     f.still = still, f.calm = calm;
     std::optional<EvidenceLook> look;
-    if (late) look = EvidenceLook{*late, kLook * kSeconds};
+    if (late) look = EvidenceLook{*late, period};
     return tracker.update(f, motion, look);
   }
   // Looks at the last frame; the result is there in the next one.
@@ -179,7 +180,10 @@ START_TEST(before_a_moving_camera_motion_alone_must_be_fast_for_half_a_second) {
     bool published = false;
     for (int n = 0; n < 24; ++n) {
       const double x = 200 + (speed * kSeconds + scene.pan) * n;
-      published = !scene.frame({x}, {motion_track(7, body_at(x), speed)}).empty();
+      std::vector<Track> motion;
+      if (n > 0)
+        motion.push_back(motion_track(7, body_at(x), speed));  // of one frame nothing is known to move
+      published = !scene.frame({x}, motion).empty();
       ck_assert_msg(n > 10 || !published, "frame %d", n);
     }
     ck_assert(published == (speed > 0));
@@ -212,18 +216,65 @@ END_TEST
 
 START_TEST(a_group_is_replaced_by_the_people_in_it) {
   Scene scene;
-  const Track both = motion_track(7, {195, 115, 180, 250}, 0, RegionKind::group);
-  const std::vector<PersonDetection> two{{body_at(200), kSure}, {body_at(290), kSure}};
   for (int n = 0; n < 25; ++n) {
-    const bool looked = n % kLook == 1;
-    const auto found = scene.frame({200, 290}, {both}, looked ? std::optional(two) : std::nullopt);
+    const double x = 200 + 4 * n;
+    const Track both = motion_track(7, {x - 5, 115, 180, 250}, 0, RegionKind::group);
+    std::optional<std::vector<PersonDetection>> late;
+    if (n % kLook == 1) late = {{body_at(x - 4), kSure}, {body_at(x + 86), kSure}};
+    const auto found = scene.frame({x, x + 90}, {both}, late);
     if (n % kLook == 0) scene.look();
     if (n == 0) ck_assert(found.size() == 1 && found[0].id == 7 && found[0].kind == RegionKind::group);
     if (n < 24) continue;
     ck_assert_int_eq(found.size(), 2);
     ck_assert(found[0].person && found[1].person && found[0].id != found[1].id);
-    ck_assert(near(found[0].box, body_at(200)) && near(found[1].box, body_at(290)));
+    ck_assert(near(found[0].box, body_at(x)) && near(found[1].box, body_at(x + 90)));
   }
+}
+END_TEST
+
+START_TEST(what_never_moves_before_a_still_camera_is_nobody_however_sure_a_detector_is) {
+  Scene scene;
+  for (const auto& found : walk(scene, 72, 0, kSure)) ck_assert(found.empty());
+}
+END_TEST
+
+START_TEST(a_doubtful_look_makes_no_person_of_what_moves) {
+  Scene scene;
+  scene.frame({200}, {motion_track(7, body_at(200))});
+  scene.look();
+  const auto found =
+      scene.frame({200}, {motion_track(7, body_at(200))}, std::vector<PersonDetection>{{body_at(200), 0.1}});
+  ck_assert(found.size() == 1 && !found[0].person);
+}
+END_TEST
+
+START_TEST(who_is_shown_once_a_second_is_published_all_the_time) {
+  Scene scene;
+  scene.calm = 0.4, scene.still = false;
+  std::vector<PersonDetection> seen;
+  for (int n = 0; n < 120; ++n) {
+    std::optional<std::vector<PersonDetection>> late;
+    if (n % 24 == 1) late = {{body_at(200 + 2 * (n - 1)), kSure}};
+    const auto found = scene.frame({200.0 + 2 * n}, {}, late, 1);
+    if (n % 24 == 0) scene.look();
+    if (n < 30) continue;
+    ck_assert_msg(found.size() == 1, "frame %d", n);
+    ck_assert(found[0].state == TrackState::seen);
+  }
+}
+END_TEST
+
+START_TEST(a_look_counts_however_late_it_is) {
+  Scene scene;
+  scene.calm = 0.4, scene.still = false;
+  int published = 0;
+  for (int n = 0; n < 240; ++n) {
+    std::optional<std::vector<PersonDetection>> late;
+    if (n % 48 == 40) late = {{body_at(200 + (n - 40)), kSure}};
+    published += !scene.frame({200.0 + n}, {}, late, 2).empty();
+    if (n % 48 == 0) scene.look();
+  }
+  ck_assert_int_gt(published, 100);
 }
 END_TEST
 
@@ -261,19 +312,23 @@ START_TEST(the_steady_state_allocates_nothing) {
       if (n % kLook == 0) scene.look();
     }
   };
-  run(24);
-  const std::size_t bytes = scene.tracker.bytes();
   EvidenceFrame f;
   Image<std::uint8_t> picture(kSmall);
   f.seconds = kSeconds, f.size = kFrame, f.picture = picture.view();
+  const auto run_black = [&] {
+    for (int n = 0; n < 24; ++n) {
+      if (n % kLook == 1)
+        scene.tracker.update(f, motion, EvidenceLook{bodies});
+      else
+        scene.tracker.update(f, motion);
+      if (n % kLook == 0) scene.tracker.begin_look();
+    }
+  };
+  run(24);
+  run_black();
+  const std::size_t bytes = scene.tracker.bytes();
   const auto before = allocations();
-  for (int n = 0; n < 24; ++n) {
-    if (n % kLook == 1)
-      scene.tracker.update(f, motion, EvidenceLook{bodies});
-    else
-      scene.tracker.update(f, motion);
-    if (n % kLook == 0) scene.tracker.begin_look();
-  }
+  run_black();
   ck_assert_uint_eq(allocations(), before);
   ck_assert_uint_eq(scene.tracker.bytes(), bytes);
 }
@@ -289,6 +344,9 @@ int main() {
        before_a_moving_camera_motion_alone_must_be_fast_for_half_a_second,
        in_a_shaken_scene_motion_tracks_are_no_witness,
        a_look_makes_a_motion_track_a_person_and_leaves_its_box_and_identity,
-       a_group_is_replaced_by_the_people_in_it, an_identity_that_motion_gives_back_is_the_persons_again,
+       a_group_is_replaced_by_the_people_in_it,
+       what_never_moves_before_a_still_camera_is_nobody_however_sure_a_detector_is,
+       a_doubtful_look_makes_no_person_of_what_moves, who_is_shown_once_a_second_is_published_all_the_time,
+       a_look_counts_however_late_it_is, an_identity_that_motion_gives_back_is_the_persons_again,
        after_a_reset_nothing_is_known_and_no_identity_is_given_twice, the_steady_state_allocates_nothing});
 }

@@ -9,6 +9,7 @@ void LookWorker::start(std::unique_ptr<WholeFrameDetector> detector) {
   stop();
   detector_ = std::move(detector);
   stage_ = Stage::idle;
+  duration_ = {};
   thread_ = std::thread([this] { run(); });
 }
 

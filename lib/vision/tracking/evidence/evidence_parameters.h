@@ -17,8 +17,10 @@ struct EvidenceParameters {
   double least = -0.3, most = 1;
   double weak = -0.2;   // score from which on a box may be that of a known track
   double missed = 0.5;  // that a look takes from a track which it does not show
-  // Evidence a second: of a motion region, of own motion inside the box, and against a track that rests in a calm scene.
-  double region = 3.2, moving = 1.2, resting = 1.2;
+  // Evidence against a track that a look finds at rest in a calm scene: less than a sure look gives at any rate.
+  double resting = 0.3;
+  // Evidence a second, of own motion inside the box and of a motion region.
+  double moving = 1.2, region = 3.2;
   double publish = 1.5, ceiling = 3;
 
   double gate = 0.25;  // intersection over union of a track and its observation, at least
@@ -46,7 +48,9 @@ struct EvidenceParameters {
   // swept: .3 to 1 h/s differ by .02 in the recall of one labelled object.
   double fast = 0.3, fast_time = 0.5;
 
-  double shown = 1;            // s without an observation for which a track is published
+  // s without an observation, and times from look to look, for which a track is published: the longer. derived: one look may
+  // miss it.
+  double shown = 1, looks_shown = 1.5;
   double least_visible = 0.4;  // of the box inside the picture
   double least_height = 8;     // pixels of the reduced picture
 };

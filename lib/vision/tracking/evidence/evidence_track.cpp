@@ -27,11 +27,10 @@ double scale_at(const Transform& t, const Point& p) {
 
 }  // namespace
 
-EvidenceTrack EvidenceTrack::begin(const Box& box, std::uint64_t number) {
+EvidenceTrack EvidenceTrack::begin(const Box& box) {
   EvidenceTrack t;
   t.set_box(box);
-  t.first_ = number;
-  t.keep(number);
+  t.keep();
   return t;
 }
 
@@ -52,6 +51,7 @@ void EvidenceTrack::follow(const Pyramid* before, const Pyramid& now, const Tran
   std::optional<BoxStep> step;
   if (before && !mirrors)
     step = follow_box(*before, now, box(), {at_rest.x - centre.x, at_rest.y - centre.y});
+  followed = step.has_value();
   Point own{velocity.x * seconds, velocity.y * seconds};
   if (step) {
     height *= step->growth;
@@ -68,9 +68,8 @@ void EvidenceTrack::follow(const Pyramid* before, const Pyramid& now, const Tran
   height_variance += p.height_drift * p.height_drift * seconds;
 }
 
-void EvidenceTrack::correct(const Box& seen, std::uint64_t number, double weight,
-                            const EvidenceParameters& p) {
-  const Box& then = box_at(number);
+void EvidenceTrack::correct(const Box& seen, double weight, const EvidenceParameters& p) {
+  const Box& then = looked_;
   const Point was = middle_of(then), is = middle_of(seen);
   const double place = weight * p.place * height, tall = weight * p.height;
   const double gain = place_variance / (place_variance + place * place);
@@ -83,19 +82,18 @@ void EvidenceTrack::correct(const Box& seen, std::uint64_t number, double weight
   height_variance *= 1 - share;
 }
 
-void EvidenceTrack::keep(std::uint64_t number) {
-  places_[number % kKept] = {box(), way_, age};
-  last_ = number;
+void EvidenceTrack::keep() {
+  const Place& last = places_[(next_ + kKept - 1) % kKept];
+  if (age - last.age < kTravelTime / kKept) return;
+  places_[next_] = {way_, age};
+  next_ = (next_ + 1) % kKept;
 }
 
 bool EvidenceTrack::travels(double distance) const {
-  for (std::uint64_t n = last_; n >= first_ && n + kKept > last_; --n) {
-    const Place& place = places_[n % kKept];
-    if (age - place.age > kTravelTime) break;
-    if (std::hypot(way_.x - place.way.x, way_.y - place.way.y) > distance) return true;
-    if (n == 0) break;
-  }
-  return false;
+  return std::ranges::any_of(places_, [&](const Place& place) {
+    return age - place.age <= kTravelTime &&
+           std::hypot(way_.x - place.way.x, way_.y - place.way.y) > distance;
+  });
 }
 
 void EvidenceTrack::add(double more, const EvidenceParameters& p) {

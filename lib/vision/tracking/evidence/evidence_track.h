@@ -16,7 +16,7 @@
 namespace cerberus::vision {
 
 struct EvidenceTrack {
-  static constexpr std::size_t kKept = 32;  // places of the last frames, for looks that are late
+  static constexpr std::size_t kKept = 25;  // places of the last second
 
   std::uint32_t id = 0;
   std::uint32_t motion_id = 0;  // of the motion track that it was last matched with; 0: none
@@ -26,6 +26,7 @@ struct EvidenceTrack {
   bool person = false;         // a look has shown it
   bool published = false;      // its evidence has sufficed
   bool moved = false;          // it has travelled, or its inside has moved
+  bool followed = false;       // the picture has shown where it went to this frame
   bool hit = false;            // observed in this frame
   RegionKind kind = RegionKind::person_like;
   double evidence = 0;
@@ -36,7 +37,7 @@ struct EvidenceTrack {
   double height = 0, shape = 0;                    // shape: width / height
   double place_variance = 0, height_variance = 0;  // pixels^2; of the logarithm
 
-  static EvidenceTrack begin(const Box& box, std::uint64_t number);
+  static EvidenceTrack begin(const Box& box);
 
   Box box() const { return {centre.x - shape * height / 2, centre.y - height / 2, shape * height, height}; }
   void set_box(const Box& box);
@@ -44,25 +45,26 @@ struct EvidenceTrack {
   // where there is none. motion: of the camera, reduced pixels.
   void follow(const Pyramid* before, const Pyramid& now, const Transform& motion, double seconds,
               const EvidenceParameters& p);
-  // A box in frame `number`: the present one or one of the last kKept. weight: standard deviations are that many times
-  // as large.
-  void correct(const Box& seen, std::uint64_t number, double weight, const EvidenceParameters& p);
-  // Keeps the place for late looks; once a frame.
-  void keep(std::uint64_t number);
-  bool was_there(std::uint64_t number) const { return number >= first_ && number + kKept > last_; }
-  const Box& box_at(std::uint64_t number) const { return places_[number % kKept].box; }
+  // A look begins at the present frame.
+  void begin_look() { looked_ = box(); }
+  // Where it was then. No area: it has begun since.
+  const Box& looked() const { return looked_; }
+  // A look has shown it in this box then. weight: standard deviations are that many times as large.
+  void correct(const Box& seen, double weight, const EvidenceParameters& p);
+  // Keeps its way for travels(); once a frame.
+  void keep();
   // Whether it has gone so far, h, from any of its places of the last second.
   bool travels(double distance) const;
   void add(double more, const EvidenceParameters& p);
 
  private:
   struct Place {
-    Box box;
     Point way;
-    double age = 0;
+    double age = -1e9;
   };
+  Box looked_;
   Point way_;  // h, since it began, relative to the scene
-  std::uint64_t first_ = 0, last_ = 0;
+  std::size_t next_ = 0;
   std::array<Place, kKept> places_;
 };
 

@@ -43,6 +43,7 @@ Box scaled(const Box& box, double across, double down) {
 void EvidenceTracker::reset() {
   tracks_.clear(), known_.clear(), results_.clear();
   number_ = look_number_ = 0;
+  period_ = 0;
   camera_stood_ = kStillTime;
   next_id_ = std::max(next_id_, kFirstOwn);
 }
@@ -59,6 +60,7 @@ void EvidenceTracker::begin_look() {
   looked_pyramid_.borrow(looked_.view(), kLevels);
   look_number_ = number_;
   since_look_ = {};
+  for (EvidenceTrack& t : tracks_) t.begin_look();
 }
 
 // Whether more of the box has changed since the last frame than the camera's motion explains.
@@ -91,16 +93,14 @@ bool EvidenceTracker::inside_moves(const Box& box, bool calm) const {
 void EvidenceTracker::match_look(bool sure) {
   rows_.clear(), columns_.clear();
   for (std::size_t i = 0; i < tracks_.size(); ++i)
-    if (!tracks_[i].hit && !tracks_[i].holds_several && tracks_[i].was_there(look_number_))
-      rows_.push_back(i);
+    if (!tracks_[i].hit && !tracks_[i].holds_several && tracks_[i].looked().area() > 0) rows_.push_back(i);
   for (std::size_t j = 0; j < bodies_.size(); ++j)
     if ((bodies_[j].score >= kSure) == sure && bodies_[j].score > p_.weak) columns_.push_back(j);
   if (rows_.empty() || columns_.empty()) return;
   cost_.assign(rows_.size() * columns_.size(), Assignment::kForbidden);
   for (std::size_t i = 0; i < rows_.size(); ++i)
     for (std::size_t j = 0; j < columns_.size(); ++j) {
-      const double overlap =
-          intersection_over_union(tracks_[rows_[i]].box_at(look_number_), bodies_[columns_[j]].box);
+      const double overlap = intersection_over_union(tracks_[rows_[i]].looked(), bodies_[columns_[j]].box);
       if (overlap >= p_.gate) cost_[i * columns_.size() + j] = 1 - overlap;
     }
   const auto pairs =
@@ -111,10 +111,11 @@ void EvidenceTracker::match_look(bool sure) {
     if (cost_[i * columns_.size() + j] >= Assignment::kForbidden) continue;
     EvidenceTrack& t = tracks_[rows_[i]];
     const PersonDetection& body = bodies_[columns_[j]];
-    if (!t.mirrors) t.correct(body.box, look_number_, sure ? 1 : kWeakWeight, p_);
+    if (!t.mirrors) t.correct(body.box, sure ? 1 : kWeakWeight, p_);
     t.add(std::clamp(body.score - (t.moved ? p_.neutral : p_.unmoved), p_.least, p_.most), p_);
     t.quality += kQualityGain * (std::min(body.score, kMostQuality) - t.quality);
-    t.hit = t.person = true;
+    t.person = t.person || sure;
+    t.hit = true;
     t.unseen = 0;
     used_[columns_[j]] = 1;
   }
@@ -136,7 +137,7 @@ void EvidenceTracker::begin_at(const PersonDetection& body) {
     return !t.holds_several && is_one_body(box, t.box(), p_.body);
   };
   if (std::ranges::any_of(tracks_, covers)) return;
-  EvidenceTrack t = EvidenceTrack::begin(box, number_);
+  EvidenceTrack t = EvidenceTrack::begin(box);
   t.id = next_id_++;
   t.person = t.hit = true;
   t.evidence = std::clamp(body.score - p_.unmoved, 0.0, p_.most);
@@ -149,9 +150,9 @@ void EvidenceTracker::take_look(const EvidenceLook& look) {
   for (const PersonDetection& body : look.bodies) bodies_.push_back({reduced(body.box), body.score});
   keep_one_box_a_body(bodies_, p_.body);
   for (EvidenceTrack& t : tracks_) {
-    if (!t.mirrors || !t.was_there(look_number_)) continue;
+    if (!t.mirrors || t.looked().area() <= 0) continue;
     const auto inside = std::ranges::count_if(bodies_, [&](const PersonDetection& body) {
-      return body.score >= kSure && share_within(body.box, t.box_at(look_number_)) >= p_.body.nested;
+      return body.score >= kSure && share_within(body.box, t.looked()) >= p_.body.nested;
     });
     t.holds_several = t.kind == RegionKind::group || inside > 1;
   }
@@ -214,7 +215,7 @@ void EvidenceTracker::begin_mirror(const Track& motion) {
            is_one_body(box, t.box(), {.same_window = p_.body.same_window, .nested = p_.apart});
   };
   if (std::ranges::any_of(tracks_, covers)) return;
-  EvidenceTrack t = EvidenceTrack::begin(box, number_);
+  EvidenceTrack t = EvidenceTrack::begin(box);
   const auto taken = [&](std::uint32_t id) {
     return std::ranges::find(tracks_, id, &EvidenceTrack::id) != tracks_.end();
   };
@@ -247,20 +248,23 @@ void EvidenceTracker::take_motion(std::span<const Track> motion) {
 // What the look says of tracks that it does not show, and what their own motion says.
 void EvidenceTracker::judge_look(const EvidenceLook& look) {
   const bool calm = frame_.calm >= p_.calm;
-  const double seconds = std::min(look.seconds, 1.0);
+  period_ = look.seconds;
   for (EvidenceTrack& t : tracks_) {
     const bool moving = inside_moves(t.box(), calm);
     t.moved = t.moved || moving;
     if (!t.hit) {
       const bool shown = t.since_motion <= look.seconds;
-      if (!shown && t.was_there(look_number_)) t.evidence -= p_.missed;
+      if (!shown && t.looked().area() > 0) t.evidence -= p_.missed;
       t.quality += kQualityGain * ((shown ? kMotionQuality : kMissedQuality) - t.quality);
     }
-    if (t.mirrors) continue;
+    if (t.mirrors) {
+      t.evidence = std::max(t.evidence, 0.0);
+      continue;
+    }
     if (moving)
-      t.add(p_.moving * seconds, p_);
+      t.add(p_.moving * std::min(look.seconds, 1.0), p_);
     else if (calm && !t.travels(p_.travel))
-      t.evidence -= p_.resting * seconds;
+      t.evidence -= p_.resting;
   }
 }
 
@@ -269,7 +273,9 @@ void EvidenceTracker::end_tracks() {
   for (EvidenceTrack& t : tracks_) {
     t.moved = t.moved || t.travels(p_.travel);
     const bool alone = t.mirrors && (camera_stood_ >= kStillTime || t.fast >= p_.fast_time);
-    if (t.evidence >= p_.publish && (t.person || alone)) t.published = true;
+    // A detector errs at one place of a still picture again and again; a person there moves at some time.
+    const bool person = t.person && (t.moved || camera_stood_ < kStillTime);
+    if (t.evidence >= p_.publish && (person || alone)) t.published = true;
   }
   std::erase_if(tracks_, [&](const EvidenceTrack& t) {
     return (t.evidence < 0 && !t.mirrors) || t.height <= p_.least_height ||
@@ -297,7 +303,7 @@ void EvidenceTracker::end_tracks() {
 
 void EvidenceTracker::remember_motion() {
   for (EvidenceTrack& t : tracks_) {
-    t.keep(number_);
+    t.keep();
     if (t.motion_id == 0 || t.since_motion > 0) continue;
     auto known = std::ranges::find(known_, t.motion_id, &Known::motion_id);
     if (known == known_.end()) {
@@ -313,7 +319,7 @@ void EvidenceTracker::publish(std::span<const Track> motion) {
   const double across = static_cast<double>(frame_.size.width) / frame_.picture.width;
   const double down = static_cast<double>(frame_.size.height) / frame_.picture.height;
   for (const EvidenceTrack& t : tracks_) {
-    if (!t.published || (!t.mirrors && t.unseen > p_.shown)) continue;
+    if (!t.published || (!t.mirrors && t.unseen > std::max(p_.shown, p_.looks_shown * period_))) continue;
     const auto stands_for = [&](const EvidenceTrack& other) {
       return other.published && other.person && !other.holds_several &&
              share_within(other.box(), t.box()) >= p_.body.nested;
@@ -331,7 +337,7 @@ void EvidenceTracker::publish(std::span<const Track> motion) {
     r.age = t.age;
     r.confidence = std::clamp(t.evidence / p_.ceiling, 0.0, 1.0);
     r.person = t.person, r.moves = t.since_motion < 1, r.kind = t.kind;
-    r.state = t.hit || t.unseen == 0 ? TrackState::seen : TrackState::coasted;
+    r.state = t.hit || t.unseen == 0 || t.followed ? TrackState::seen : TrackState::coasted;
     if (t.mirrors) {
       const auto found = std::ranges::find(motion, t.motion_id, &Track::id);
       r.motion = static_cast<int>(found - motion.begin());
@@ -355,7 +361,7 @@ std::span<const EvidenceResult> EvidenceTracker::update(const EvidenceFrame& fra
   pyramids_[present_].borrow(picture.view(), kLevels);
   motion_ = frame.motion.rescaled(frame.size, picture.size());
   since_look_ = motion_ * since_look_;
-  camera_stood_ = frame.still ? camera_stood_ + frame.seconds : 0;
+  if (!frame.fresh) camera_stood_ = frame.still ? camera_stood_ + frame.seconds : 0;
   for (EvidenceTrack& t : tracks_)
     t.follow(number_ > 1 ? &pyramids_[1 - present_] : nullptr, pyramids_[present_], motion_, frame.seconds,
              p_);

@@ -98,6 +98,7 @@ class EvidenceTracker {
   int present_ = 0;
   std::uint64_t number_ = 0, look_number_ = 0;
   Transform motion_, since_look_;  // reduced pixels
+  double period_ = 0;              // s from look to look
   double camera_stood_ = 0;        // s
   std::uint32_t next_id_ = 0;
 };
