@@ -50,7 +50,7 @@ typedef enum {
  * @y: top edge, frame pixels
  * @width: frame pixels
  * @height: frame pixels
- * @confidence: that it is one whole object, 0 to 1
+ * @confidence: that it is one whole object, 0 to 1; of a person of `personverify` the evidence for it, 0 to 1
  * @vx: speed to the right, frame pixels a second, the camera's motion taken out
  * @vy: speed downwards, frame pixels a second, the camera's motion taken out; both as the video is played: backwards
  *     they are the other way round
@@ -58,7 +58,7 @@ typedef enum {
  * @state: how its place was determined
  * @bearing: direction of its centre from the camera's axis (the head's
  *     pan is not in it), degrees, positive to the right; NaN if unknown
- * @distance: metres from the camera; NaN if unknown
+ * @distance: metres from the camera; NaN if unknown, as both are of a person whom only a people detector has found
  *
  * Something that moves. On a buffer it is also a #GstVideoRegionOfInterestMeta of type `motion` (`person` if @person),
  * which other elements and tools read.
