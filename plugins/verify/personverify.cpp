@@ -120,8 +120,8 @@ GstStaticPadTemplate src_template =
 
 // Columns of the reduced picture in which persons are followed. Chosen: as motiondetect's.
 constexpr int kFollowedWidth = 320;
-// Running time after which a result counts where the pipeline is not live: a slow processor is waited for. swept:
-// docs/quality.md, 40 and 100 ms.
+// Running time after which a result counts where the pipeline is not live: a slow processor is waited for. swept: 40
+// and 100 ms, before persons had tracks of their own.
 constexpr GstClockTime kDelay = 40 * GST_MSECOND;
 // Looks a second. Derived: a slow processor takes 100 ms for one.
 constexpr double kMostRate = 10;
@@ -270,14 +270,14 @@ gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
     state.use = cerberus::plugin::use_of(kind);
     state.threshold = settings.threshold > 0 ? settings.threshold : state.use.threshold;
     std::string wrong;
-    auto detector =
-        cerberus::plugin::make_whole_frame_detector(kind,
-                                                    {.model = cerberus::plugin::model_path(settings.model),
-                                                     .config = settings.config,
-                                                     .labels = settings.labels,
-                                                     .mean = settings.mean,
-                                                     .scale = settings.scale},
-                                                    wrong, cerberus::plugin::kWholeFrameLines, state.threshold);
+    auto detector = cerberus::plugin::make_whole_frame_detector(
+        kind,
+        {.model = cerberus::plugin::model_path(settings.model),
+         .config = settings.config,
+         .labels = settings.labels,
+         .mean = settings.mean,
+         .scale = settings.scale},
+        wrong, cerberus::plugin::kWholeFrameLines, state.threshold);
     if (!detector) {
       refuse_model(transform, wrong);
       return FALSE;
