@@ -24,7 +24,7 @@
  *
  * People are found by OpenCV's default people detector (histograms of oriented gradients, trained on INRIA's data) or with
  * `detector=daimler` by its Daimler detector, both in a picture of 480 lines: upright ones who are at least a fifth, or a
- * sixth, of it high. A look costs 45 to 150 ms of one core; live the detector takes `cpu` of a core at most, and looks
+ * sixth, of it high. A look costs 45 to 150 ms of one core; live the detector works `cpu` of the time at most, and looks
  * less often where that does not suffice. It does not see people who sit or lie, or only their upper half.
  *
  * `model` names a network instead: an ONNX file whose input has a fixed size (1 x 3 x height x width), or the weights of a
@@ -161,8 +161,8 @@ const cerberus::plugin::Property<Settings> kProperties[] = {
              "Looks of the detector a second of running time, at most where the source is live"),
     property(
         "cpu", &Settings::cpu, 0.01, 1,
-        "Where the source is live: share of a processor core that the detector may take; a slow one looks "
-        "less often than `rate`"),
+        "Where the source is live: share of the time for which the detector works, at most, whatever cores "
+        "OpenCV uses meanwhile; a slow one looks less often than `rate`"),
     property("require", &Settings::require, require_type, "What is published"),
     property("threshold", &Settings::threshold, 0, 10,
              "Score from which on a hit is a person: lower finds more people and more things that are none; "
