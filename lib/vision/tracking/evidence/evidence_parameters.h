@@ -25,8 +25,8 @@ struct EvidenceParameters {
 
   double gate = 0.25;  // intersection over union of a track and its observation, at least
   double adopt = 0.4;  // the same, from which on a track takes over the box of a motion track
-  double apart = 0.2;  // overlap of a motion track with another track from which on it begins none
-  double same = 0.6;   // intersection over union of two tracks of one body
+  double apart =
+      0.2;  // share of the smaller of a motion track and another track from which on it begins none
   BodyBoxParameters body;
 
   // Standard deviations: of a look's place, h, and of the logarithm of its height; and by how much a track drifts in the

@@ -90,17 +90,15 @@ bool EvidenceTracker::inside_moves(const Box& box, bool calm) const {
   return share > p_.inside && (calm || share > p_.around * other);
 }
 
-void EvidenceTracker::match_look(bool sure) {
-  rows_.clear(), columns_.clear();
-  for (std::size_t i = 0; i < tracks_.size(); ++i)
-    if (!tracks_[i].hit && !tracks_[i].holds_several && tracks_[i].looked().area() > 0) rows_.push_back(i);
-  for (std::size_t j = 0; j < bodies_.size(); ++j)
-    if ((bodies_[j].score >= kSure) == sure && bodies_[j].score > p_.weak) columns_.push_back(j);
+// Pairs the tracks rows_ with the boxes columns_ so that the overlaps are largest in all; each pair reaches the gate.
+// row, column: boxes of their elements. use: called with a row's element, a column's and their overlap.
+template <typename RowBox, typename ColumnBox, typename Use>
+void EvidenceTracker::pair_by_overlap(const RowBox& row, const ColumnBox& column, const Use& use) {
   if (rows_.empty() || columns_.empty()) return;
   cost_.assign(rows_.size() * columns_.size(), Assignment::kForbidden);
   for (std::size_t i = 0; i < rows_.size(); ++i)
     for (std::size_t j = 0; j < columns_.size(); ++j) {
-      const double overlap = intersection_over_union(tracks_[rows_[i]].looked(), bodies_[columns_[j]].box);
+      const double overlap = intersection_over_union(row(rows_[i]), column(columns_[j]));
       if (overlap >= p_.gate) cost_[i * columns_.size() + j] = 1 - overlap;
     }
   const auto pairs =
@@ -108,17 +106,30 @@ void EvidenceTracker::match_look(bool sure) {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     if (pairs[i] < 0) continue;
     const auto j = static_cast<std::size_t>(pairs[i]);
-    if (cost_[i * columns_.size() + j] >= Assignment::kForbidden) continue;
-    EvidenceTrack& t = tracks_[rows_[i]];
-    const PersonDetection& body = bodies_[columns_[j]];
+    const double cost = cost_[i * columns_.size() + j];
+    if (cost < Assignment::kForbidden) use(rows_[i], columns_[j], 1 - cost);
+  }
+}
+
+void EvidenceTracker::match_look(bool sure) {
+  rows_.clear(), columns_.clear();
+  for (std::size_t i = 0; i < tracks_.size(); ++i)
+    if (!tracks_[i].hit && !tracks_[i].holds_several && tracks_[i].looked().area() > 0) rows_.push_back(i);
+  for (std::size_t j = 0; j < bodies_.size(); ++j)
+    if ((bodies_[j].score >= kSure) == sure && bodies_[j].score > p_.weak) columns_.push_back(j);
+  const auto looked = [&](std::size_t i) { return tracks_[i].looked(); };
+  const auto box_of = [&](std::size_t j) { return bodies_[j].box; };
+  pair_by_overlap(looked, box_of, [&](std::size_t i, std::size_t j, double) {
+    EvidenceTrack& t = tracks_[i];
+    const PersonDetection& body = bodies_[j];
     if (!t.mirrors) t.correct(body.box, sure ? 1 : kWeakWeight, p_);
     t.add(std::clamp(body.score - (t.moved ? p_.neutral : p_.unmoved), p_.least, p_.most), p_);
     t.quality += kQualityGain * (std::min(body.score, kMostQuality) - t.quality);
     t.person = t.person || sure;
     t.hit = true;
     t.unseen = 0;
-    used_[columns_[j]] = 1;
-  }
+    used_[j] = 1;
+  });
 }
 
 // A track begins in the frame that was looked at, and follows the picture to the present one.
@@ -148,7 +159,6 @@ void EvidenceTracker::begin_at(const PersonDetection& body) {
 void EvidenceTracker::take_look(const EvidenceLook& look) {
   bodies_.clear();
   for (const PersonDetection& body : look.bodies) bodies_.push_back({reduced(body.box), body.score});
-  keep_one_box_a_body(bodies_, p_.body);
   for (EvidenceTrack& t : tracks_) {
     if (!t.mirrors || t.looked().area() <= 0) continue;
     const auto inside = std::ranges::count_if(bodies_, [&](const PersonDetection& body) {
@@ -168,13 +178,14 @@ void EvidenceTracker::mirror(EvidenceTrack& t, const Track& motion) const {
   t.mirrors = true;
   t.kind = motion.kind;
   t.holds_several = t.holds_several || t.kind == RegionKind::group;
-  const double speed = std::hypot(motion.vx, motion.vy);
   if (motion.state != TrackState::seen) {
     t.fast = 0;
     return;
   }
-  t.fast = speed >= p_.fast * motion.box.height && inside_moves(t.box(), false) ? t.fast + frame_.seconds : 0;
   t.since_motion = t.unseen = 0;
+  if (t.published) return;  // whether it is fast decides nothing else
+  const bool fast = std::hypot(motion.vx, motion.vy) >= p_.fast * motion.box.height;
+  t.fast = fast && inside_moves(t.box(), false) ? t.fast + frame_.seconds : 0;
 }
 
 void EvidenceTracker::match_motion(std::span<const Track> motion) {
@@ -184,36 +195,21 @@ void EvidenceTracker::match_motion(std::span<const Track> motion) {
   for (std::size_t j = 0; j < motion.size(); ++j)
     if (!used_[j] && motion[j].state == TrackState::seen && motion[j].kind != RegionKind::group)
       columns_.push_back(j);
-  if (rows_.empty() || columns_.empty()) return;
-  cost_.assign(rows_.size() * columns_.size(), Assignment::kForbidden);
-  for (std::size_t i = 0; i < rows_.size(); ++i)
-    for (std::size_t j = 0; j < columns_.size(); ++j) {
-      const double overlap =
-          intersection_over_union(tracks_[rows_[i]].box(), reduced(motion[columns_[j]].box));
-      if (overlap >= p_.gate) cost_[i * columns_.size() + j] = 1 - overlap;
-    }
-  const auto pairs =
-      assignment_.solve(cost_, static_cast<int>(rows_.size()), static_cast<int>(columns_.size()));
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    if (pairs[i] < 0) continue;
-    const std::size_t at = i * columns_.size() + static_cast<std::size_t>(pairs[i]);
-    if (cost_[at] >= Assignment::kForbidden) continue;
-    EvidenceTrack& t = tracks_[rows_[i]];
-    const Track& seen = motion[columns_[static_cast<std::size_t>(pairs[i])]];
-    t.motion_id = seen.id;
+  const auto present = [&](std::size_t i) { return tracks_[i].box(); };
+  const auto box_of = [&](std::size_t j) { return reduced(motion[j].box); };
+  pair_by_overlap(present, box_of, [&](std::size_t i, std::size_t j, double overlap) {
+    EvidenceTrack& t = tracks_[i];
+    t.motion_id = motion[j].id;
     t.add(p_.region * frame_.seconds, p_);
     t.since_motion = t.unseen = 0;
-    used_[columns_[static_cast<std::size_t>(pairs[i])]] = 1;
-    if (1 - cost_[at] >= p_.adopt) mirror(t, seen);
-  }
+    used_[j] = 1;
+    if (overlap >= p_.adopt) mirror(t, motion[j]);
+  });
 }
 
 void EvidenceTracker::begin_mirror(const Track& motion) {
   const Box box = reduced(motion.box);
-  const auto covers = [&](const EvidenceTrack& t) {
-    return intersection_over_union(box, t.box()) >= p_.apart ||
-           is_one_body(box, t.box(), {.same_window = p_.body.same_window, .nested = p_.apart});
-  };
+  const auto covers = [&](const EvidenceTrack& t) { return is_one_body(box, t.box(), {.nested = p_.apart}); };
   if (std::ranges::any_of(tracks_, covers)) return;
   EvidenceTrack t = EvidenceTrack::begin(box);
   const auto taken = [&](std::uint32_t id) {
@@ -291,8 +287,7 @@ void EvidenceTracker::end_tracks() {
     const auto same = [&](const EvidenceTrack& other) {
       if ((tracks_[i].mirrors && other.mirrors) || tracks_[i].holds_several || other.holds_several)
         return false;
-      return intersection_over_union(tracks_[i].box(), other.box()) >= p_.same ||
-             is_one_body(tracks_[i].box(), other.box(), p_.body);
+      return is_one_body(tracks_[i].box(), other.box(), p_.body);
     };
     if (std::any_of(tracks_.begin(), tracks_.begin() + static_cast<std::ptrdiff_t>(kept), same)) continue;
     if (kept != i) tracks_[kept] = tracks_[i];

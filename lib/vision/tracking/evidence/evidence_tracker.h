@@ -30,7 +30,7 @@ struct EvidenceFrame {
   double calm = 1;     // SceneCalm::share()
 };
 
-// What a look at an earlier frame has shown: one box for each body (body_boxes.h), frame pixels. A score of .5 is the least of a
+// What a look at an earlier frame has shown: one box for each body (hits_to_bodies()), frame pixels. A score of .5 is the least of a
 // person whom no track has; 1 is a person beyond doubt, 0 and less is most likely none.
 struct EvidenceLook {
   std::span<const PersonDetection> bodies;
@@ -72,6 +72,8 @@ class EvidenceTracker {
   Box reduced(const Box& box) const;
   bool inside_moves(const Box& box, bool calm) const;
   void take_look(const EvidenceLook& look);
+  template <typename RowBox, typename ColumnBox, typename Use>
+  void pair_by_overlap(const RowBox& row, const ColumnBox& column, const Use& use);
   void match_look(bool sure);
   void begin_at(const PersonDetection& body);
   void take_motion(std::span<const Track> motion);
