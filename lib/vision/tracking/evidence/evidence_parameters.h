@@ -29,18 +29,18 @@ struct EvidenceParameters {
       0.2;  // share of the smaller of a motion track and another track from which on it begins none
   BodyBoxParameters body;
 
-  // Standard deviations: of a look's place, h, and of the logarithm of its height; and by how much a track drifts in the
-  // square root of a second: its place while the picture is followed and while it is not, h, and its height.
-  // swept: place .04 to .08 are within 3 points of each other.
-  double place = 0.05, height = 0.10;
-  double followed_drift = 0.08, free_drift = 0.30, height_drift = 0.10;
+  // Standard deviations: of a look's place, h, and of the logarithm of its height; and by how much both drift in the square root
+  // of a second. swept: place .04 to .08 are within 3 points of each other, drifts of their own for a track that the picture
+  // does not show and for its height within .4.
+  double place = 0.05, height = 0.10, drift = 0.08;
   double velocity_time = 0.2;  // s, of the mean of the velocity
 
   // Share of calm from which on motion regions are believed. measured: where they are right the share is .84 to 1, in
   // shaken rooms .3 to .7.
   double calm = 0.8;
-  // Share of a box's pixels that have changed, and times as many as around it, from which on its inside moves.
-  double inside = 0.05, around = 2;
+  // Share of a box's pixels that have changed from which on its inside moves; where the scene is not calm, more than around
+  // it, too.
+  double inside = 0.05;
   int changed = 12;  // grey levels
   // h that a track goes within a second before it counts as moved.
   double travel = 0.25;

@@ -63,9 +63,8 @@ void EvidenceTrack::follow(const Pyramid* before, const Pyramid& now, const Tran
   }
   centre = {at_rest.x + own.x * height, at_rest.y + own.y * height};
   way_.x += own.x, way_.y += own.y;
-  const double drift = (step ? p.followed_drift : p.free_drift) * height;
-  place_variance += drift * drift * seconds;
-  height_variance += p.height_drift * p.height_drift * seconds;
+  height_variance += p.drift * p.drift * seconds;
+  place_variance += p.drift * p.drift * seconds * height * height;
 }
 
 void EvidenceTrack::correct(const Box& seen, double weight, const EvidenceParameters& p) {

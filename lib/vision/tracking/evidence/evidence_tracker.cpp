@@ -87,7 +87,7 @@ bool EvidenceTracker::inside_moves(const Box& box, bool calm) const {
   if (inside == 0) return false;
   const double share = static_cast<double>(changed_inside) / inside;
   const double other = around > 0 ? static_cast<double>(changed_around) / around : 0;
-  return share > p_.inside && (calm || share > p_.around * other);
+  return share > p_.inside && (calm || share > other);
 }
 
 // Pairs the tracks rows_ with the boxes columns_ so that the overlaps are largest in all; each pair reaches the gate.
