@@ -31,10 +31,41 @@ constexpr Sequence kSequences[] = {
      "MOG2 .781  KNN .839  SGM .721  two .539  AND .349  tolerant .459"},
 };
 
+constexpr Sequence followed(const char* name, const char* source, const char* truth, int last,
+                            const char* reference) {
+  return {name, source, truth, 0, last, 0, 1, 256, 0, reference};
+}
+constexpr Sequence kFollowed[] = {
+    followed(
+        "parkour",
+        "multifilesrc location=%s/davis_parkour/frames/%%05d.jpg caps=image/jpeg,framerate=24/1 ! jpegdec",
+        "davis_parkour/gt/%05d.png", 99, "MOG2 .148  tolerant .537"),
+    followed("dance-twirl",
+             "multifilesrc location=%s/davis_dance-twirl/frames/%%05d.jpg caps=image/jpeg,framerate=24/1 ! "
+             "jpegdec",
+             "davis_dance-twirl/gt/%05d.png", 89, "MOG2 .234  tolerant .709"),
+    followed(
+        "soapbox",
+        "multifilesrc location=%s/davis_soapbox/frames/%%05d.jpg caps=image/jpeg,framerate=24/1 ! jpegdec",
+        "davis_soapbox/gt/%05d.png", 98, "MOG2 .300  tolerant .721"),
+    followed("motocross-jump",
+             "multifilesrc location=%s/davis_motocross-jump/frames/%%05d.jpg caps=image/jpeg,framerate=24/1 "
+             "! jpegdec",
+             "davis_motocross-jump/gt/%05d.png", 39, "MOG2 .163  tolerant .399"),
+    followed(
+        "kite-surf",
+        "multifilesrc location=%s/davis_kite-surf/frames/%%05d.jpg caps=image/jpeg,framerate=24/1 ! jpegdec",
+        "davis_kite-surf/gt/%05d.png", 49, "MOG2 .177  tolerant .429"),
+};
+
 }  // namespace
 
 std::span<const Sequence> sequences() {
   return kSequences;
+}
+
+std::span<const Sequence> followed_sequences() {
+  return kFollowed;
 }
 
 const Sequence& sequence(const std::string& name) {

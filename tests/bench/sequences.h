@@ -24,6 +24,8 @@ struct Sequence {
 };
 
 std::span<const Sequence> sequences();
+// A camera follows somebody near, or a vehicle. The references are of the pictures before they were made smaller.
+std::span<const Sequence> followed_sequences();
 const Sequence& sequence(const std::string& name);
 std::string source_of(const Sequence& s, const std::filesystem::path& data);
 // The truth from frame `ahead` on, at its own size or at this one, by nearest neighbour.
