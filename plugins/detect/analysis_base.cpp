@@ -13,6 +13,7 @@
 #include "shared/camera_path.hpp"
 #include "shared/clock_times.hpp"
 #include "shared/complaint.hpp"
+#include "shared/person_looks.hpp"
 #include "shared/properties.hpp"
 #include "shared/record.hpp"
 #include "shared/settings_query.hpp"
@@ -311,6 +312,10 @@ gboolean query(GstBaseTransform* trans, GstPadDirection direction, GstQuery* que
   if (direction == GST_PAD_SINK) {
     const auto ends = [&] { return is_record_query(query) && priv_of(trans).analyser->answer(query); };
     if (guarded(trans, false, ends)) return FALSE;  // not for the other branches of a tee
+    if (is_looks_query(query) && priv_of(trans).analyser->takes_looks()) {
+      accept_looks_query(query);
+      return TRUE;
+    }
   }
   return parent_class()->query(trans, direction, query);
 }

@@ -7,8 +7,8 @@
 #include <iterator>
 
 #include "cerberus/private/messages.hpp"
-#include "region_conversion.hpp"
 #include "shared/clock_times.hpp"
+#include "shared/region_conversion.hpp"
 #include "shared/video.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(detection_debug);
@@ -35,6 +35,10 @@ constexpr int kUnplaced = 50;
 constexpr char kNoPlaces[] =
     "Polygons of the world in the property zones hide nothing: they need horizontal-fov and the head's pose, "
     "as pantiltsink and virtualptz report it, on each frame.";
+
+vision::LumaSource source_of(vision::GrayView picture) {
+  return {.data = picture.data, .width = picture.width, .height = picture.height, .stride = picture.stride};
+}
 
 bool same_box(const vision::Box& a, const vision::Box& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
@@ -148,7 +152,7 @@ Analyser::Outcome Detection::analyse(Frame& frame) {
 
   bool keep = true;
   frame.everything = (frame.wanted & kRecordForReaders) != 0;
-  frame.persons = (frame.wanted & kAllTracks) != 0;
+  read_looks(frame);
   if (has(Stage::regions)) {
     const int how = state.settings.keep_planes;
     frame.everything = how == KEEP_PLANES_ALWAYS || (how == KEEP_PLANES_AUTO && frame.everything);
@@ -172,9 +176,8 @@ Analyser::Outcome Detection::analyse(Frame& frame) {
     state.detector.track(*record, frame, known ? state.found : record->regions->regions);
     state.calm = record->camera ? std::optional(record->camera->calm) : std::nullopt;
     publish_calm(frame.buffer);
-    publish_tracks(frame.buffer, *record);
+    publish_tracks(frame, *record);
     complain_of_scene(frame.seconds);
-    watch(frame, frame.seconds > 0 ? std::max(frame.seconds - state.repeated, 1e-9) : 0);
     keep = record->regions && record->regions->labels;  // made only for readers downstream
   }
   state.repeated = 0;
@@ -201,16 +204,16 @@ void Detection::repeat(Frame& frame) {
   if (last_ < Stage::regions) return;
   const double step = std::max(frame.seconds - state.repeated, 0.0);
   state.repeated = frame.seconds;
-  std::erase_if(state.published, [&](const CerberusRegion& region) {
+  std::erase_if(state.moving, [&](const CerberusRegion& region) {
     return !vision::outlasts(static_cast<vision::TrackState>(region.state), frame.seconds,
                              state.options.tracks);
   });
   if (has(Stage::tracks)) {
     publish_calm(frame.buffer);
-    for (CerberusRegion& region : state.published) region.age += clock_time(step);
+    for (CerberusRegion& region : state.moving) region.age += clock_time(step);
+    read_looks(frame);
   }
-  attach_published(frame.buffer);
-  if (has(Stage::tracks)) watch(frame, step);
+  publish(frame, {}, step);
 }
 
 // The camera's motion is on the frame already; how calm the scene is the tracker alone knows.
@@ -311,19 +314,53 @@ void Detection::attach_published(GstBuffer* buffer) {
 }
 
 void Detection::publish_regions(GstBuffer* buffer, const vision::Analysis& record) {
-  state_->published.clear();
+  state_->moving.clear();
   for (const vision::Region& region : record.regions->regions) {
-    const auto number = static_cast<guint>(state_->published.size());
-    state_->published.push_back(region_of(region));
-    state_->published.back().id = number;
+    const auto number = static_cast<guint>(state_->moving.size());
+    state_->moving.push_back(region_of(region));
+    state_->moving.back().id = number;
   }
+  state_->published = state_->moving;
   attach_published(buffer);
 }
 
-void Detection::publish_tracks(GstBuffer* buffer, const vision::Analysis& record) {
-  state_->published.clear();
-  for (const vision::Track& track : *record.tracks) state_->published.push_back(tracked(track));
-  attach_published(buffer);
+// The tracks of what moves are for an element downstream that judges them, or are judged here, where a person detector
+// looks on.
+void Detection::read_looks(Frame& frame) {
+  State& state = *state_;
+  state.looks.begins = state.looks.ends = 0;
+  const PersonLooks* looks = person_looks_of(frame.buffer);
+  if (looks) state.looks = *looks;
+  state.has_looks = state.has_looks || looks;
+  const bool judged_downstream = (frame.wanted & kAllTracks) != 0;
+  state.judges = has(Stage::tracks) && state.has_looks && !judged_downstream;
+  frame.persons = state.judges || judged_downstream;
+}
+
+void Detection::publish_tracks(const Frame& frame, const vision::Analysis& record) {
+  State& state = *state_;
+  state.moving.clear();
+  for (const vision::Track& track : *record.tracks) state.moving.push_back(tracked(track));
+  const double step = frame.seconds > 0 ? std::max(frame.seconds - state.repeated, 1e-9) : 0;
+  if (record.luma) return publish(frame, source_of((*record.luma)->view()), step);
+  const VideoFrame mapped(*frame.info, frame.buffer, GST_MAP_READ);
+  if (frame.fresh) state.stretch.reset();
+  publish(frame, mapped ? state.stretch.stretched(luma_source(*mapped.get())) : vision::LumaSource{}, step);
+}
+
+// luma: the picture, without data: that of the frame before. step: seconds since the frame before.
+void Detection::publish(const Frame& frame, const vision::LumaSource& luma, double step) {
+  State& state = *state_;
+  if (state.judges) {
+    EvidenceInput seen{
+        .size = frame.size, .luma = luma, .seconds = step, .fresh = frame.fresh, .motion = frame.motion};
+    if (const auto* camera = cerberus_buffer_peek_camera_motion(frame.buffer)) seen.calm = camera->calm;
+    state.published = state.evidence.update(seen, state.moving, state.looks, state.looks.persons_only);
+  } else {
+    state.published = state.moving;
+  }
+  attach_published(frame.buffer);
+  if (has(Stage::tracks)) watch(frame, step);
 }
 
 void Detection::read_regions(GstBuffer* buffer) {

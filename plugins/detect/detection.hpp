@@ -17,6 +17,7 @@
 #include "motion_watch.hpp"
 #include "settings_conflict.hpp"
 #include "shared/camera_path.hpp"
+#include "shared/evidence_regions.hpp"
 #include "shared/record.hpp"
 #include "shared/stamps.hpp"
 #include "vision/detector.h"
@@ -39,6 +40,7 @@ class Detection : public Analyser {
   void upstream_event(GstEvent* event) override;
   bool measures_camera() const override { return has(vision::Stage::camera); }
   bool answer(GstQuery* query) override;
+  bool takes_looks() const override { return has(vision::Stage::tracks); }
 
  protected:
   virtual DetectSettings snapshot() const = 0;
@@ -52,11 +54,15 @@ class Detection : public Analyser {
     DetectSettings settings;
     vision::DetectorOptions options;
     vision::CameraPath path;
-    std::vector<vision::Region> found;  // by another element upstream
-    std::vector<CerberusRegion> published;
-    CerberusCameraMotion motion{};                          // of the last picture
-    std::optional<double> calm;                             // likewise, where this element knows it
-    std::optional<ThresholdFacts> facts;                    // likewise
+    std::vector<vision::Region> found;              // by another element upstream
+    std::vector<CerberusRegion> moving, published;  // of what moves; attached
+    EvidenceRegions evidence;                       // of both witnesses
+    PersonLooks looks;                              // of a person detector upstream: of the last frame
+    bool has_looks = false, judges = false;         // there has been one; what moves is judged by them
+    vision::LumaStretch stretch;                    // of pictures that no stage has reduced
+    CerberusCameraMotion motion{};                  // of the last picture
+    std::optional<double> calm;                     // likewise, where this element knows it
+    std::optional<ThresholdFacts> facts;            // likewise
     std::optional<std::vector<vision::Box>> sent_burnt_in;  // upstream; none: nothing yet
     double repeated = 0;                                    // seconds for which it has been repeated
     GstClockTime shown = GST_CLOCK_TIME_NONE;               // running time of the last frame, repeated or not
@@ -77,7 +83,9 @@ class Detection : public Analyser {
   void publish_burnt_in(const vision::Analysis& record);
   void publish_threshold(GstBuffer* buffer, const vision::Analysis& record);
   void publish_regions(GstBuffer* buffer, const vision::Analysis& record);
-  void publish_tracks(GstBuffer* buffer, const vision::Analysis& record);
+  void publish_tracks(const Frame& frame, const vision::Analysis& record);
+  void read_looks(Frame& frame);
+  void publish(const Frame& frame, const vision::LumaSource& luma, double step);
   void attach_published(GstBuffer* buffer);
   void read_regions(GstBuffer* buffer);
   void judge_regions(vision::Size frame, vision::Size mask);

@@ -4,8 +4,8 @@
 #include <optional>
 #include <utility>
 
-#include "region_conversion.hpp"
 #include "shared/clock_times.hpp"
+#include "shared/region_conversion.hpp"
 
 namespace cerberus::plugin {
 

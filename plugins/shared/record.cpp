@@ -6,7 +6,7 @@
 #include <new>
 #include <utility>
 
-#include "cerberus/private/meta.hpp"
+#include "shared_meta.hpp"
 
 namespace cerberus::plugin {
 namespace {
@@ -22,25 +22,12 @@ struct FactsMeta {
   ThresholdFacts facts;
 };
 
-// Several modules of a process have this file: the one that comes first registers, under the lock of an object that
-// all of them share.
-template <typename Meta, typename... Tags>
-const GstMetaInfo* registered(const char* api, const char* name, GstMetaInitFunction init,
-                              GstMetaFreeFunction free, MetaTransform transform, Tags... tags) {
-  GstRegistry* shared = gst_registry_get();
-  GST_OBJECT_LOCK(shared);
-  const GstMetaInfo* info = gst_meta_get_info(name);
-  if (!info) info = register_meta<Meta>(register_meta_api(api, tags...), name, init, free, transform);
-  GST_OBJECT_UNLOCK(shared);
-  return info;
-}
-
 vision::Record& record_in(GstMeta* meta) {
   return reinterpret_cast<RecordMeta*>(meta)->record;
 }
 
 const GstMetaInfo* record_info() {
-  static const GstMetaInfo* const info = registered<RecordMeta>(
+  static const GstMetaInfo* const info = register_shared_meta<RecordMeta>(
       "CerberusRecordMetaAPI", "CerberusRecordMeta",
       [](GstMeta* meta, gpointer, GstBuffer*) -> gboolean {
         ::new (&record_in(meta)) vision::Record();
@@ -59,7 +46,7 @@ const GstMetaInfo* record_info() {
 }
 
 const GstMetaInfo* facts_info() {
-  static const GstMetaInfo* const info = registered<FactsMeta>(
+  static const GstMetaInfo* const info = register_shared_meta<FactsMeta>(
       "CerberusThresholdMetaAPI", "CerberusThresholdMeta",
       [](GstMeta* meta, gpointer, GstBuffer*) -> gboolean {
         reinterpret_cast<FactsMeta*>(meta)->facts = {};

@@ -83,8 +83,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -95,15 +95,16 @@
 #include "shared/camera_path.hpp"
 #include "shared/clock_times.hpp"
 #include "shared/complaint.hpp"
+#include "shared/evidence_regions.hpp"
+#include "shared/person_looks.hpp"
 #include "shared/properties.hpp"
 #include "shared/record.hpp"
+#include "shared/region_conversion.hpp"
 #include "shared/video.hpp"
 #include "vision/clocked_times.h"
 #include "vision/frame_history.h"
 #include "vision/image/luma/luma_stretch.h"
 #include "vision/persons/look_worker.h"
-#include "vision/tracking/evidence/evidence_tracker.h"
-#include "vision/tracking/evidence/kept_identities.h"
 
 namespace {
 
@@ -118,8 +119,6 @@ GstStaticPadTemplate sink_template =
 GstStaticPadTemplate src_template =
     GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
 
-// Columns of the reduced picture in which persons are followed. Chosen: as motiondetect's.
-constexpr int kFollowedWidth = 320;
 // Running time after which a result counts where the pipeline is not live: a slow processor is waited for. swept: 40
 // and 100 ms, before persons had tracks of their own.
 constexpr GstClockTime kDelay = 40 * GST_MSECOND;
@@ -200,31 +199,28 @@ const cerberus::plugin::Property<Settings> kProperties[] = {
 
 struct State {  // streaming thread only
   GstVideoInfo info;
-  vision::Size reduced;
   vision::LumaStretch stretch;
-  vision::LumaScaler scaler;
-  vision::Image<std::uint8_t> picture;
   vision::CameraFollower camera;
   GstClockTime running = GST_CLOCK_TIME_NONE;  // of the last frame
-  vision::EvidenceTracker tracker;
   vision::LookWorker worker;
-  GstClockTime looked = GST_CLOCK_TIME_NONE;         // time of the frame of the look in progress
-  GstClockTime looked_before = GST_CLOCK_TIME_NONE;  // of the last one that was taken in
-  std::vector<vision::PersonDetection> bodies;       // of that
+  cerberus::plugin::PersonLooks looks;        // of this frame
+  guint number = 0;                           // of the last look
+  GstClockTime looked = GST_CLOCK_TIME_NONE;  // time of the frame of the look in progress
   std::optional<bool> live;
+  bool tracks = true;  // itself: no tracker downstream takes the looks
   vision::FrameHistory history{vision::FrameHistory::Parameters{.gap_seconds = kLongestGap}};
   GstClockTime last = GST_CLOCK_TIME_NONE, next_look = GST_CLOCK_TIME_NONE;
-  std::vector<vision::Track> motion, motion_before;  // of this frame, and of the one before
-  std::vector<CerberusRegion> before, after;         // regions of the frame, and what is published
-  std::uint32_t last_untracked = 0;                  // identities given to regions without one so far
-  bool foreign = false;                              // they are other elements' regions of interest
-  cerberus::plugin::DetectorUse use;                 // of the detector in the worker
+  cerberus::plugin::EvidenceRegions evidence;
+  std::vector<CerberusRegion> before;  // regions of the frame
+  bool foreign = false;                // they are other elements' regions of interest
+  cerberus::plugin::DetectorUse use;   // of the detector in the worker
   double threshold = 0;
   cerberus::plugin::Complaint caps, frame;
 };
 
 struct Private {
   cerberus::plugin::Adjustable<Settings> settings;
+  std::atomic<bool> ask = true;  // downstream for a tracker; set by any thread
   State state;
 };
 
@@ -234,12 +230,12 @@ CERBERUS_DEFINE_TYPE(CerberusPersonVerify, cerberus_person_verify, GstBaseTransf
 // The result of a look in progress is of another scene.
 void drop_look(State& state) {
   if (GST_CLOCK_TIME_IS_VALID(state.looked)) state.worker.wait();
-  state.looked = state.looked_before = GST_CLOCK_TIME_NONE;
+  state.looked = GST_CLOCK_TIME_NONE;
 }
 
 void forget(State& state) {
   drop_look(state);
-  state.tracker.reset();
+  state.evidence.reset();
   state.camera.forget();
   state.stretch.reset();
   state.last = state.next_look = GST_CLOCK_TIME_NONE;
@@ -306,9 +302,7 @@ gboolean cerberus_person_verify_set_caps(GstBaseTransform* transform, GstCaps* i
       CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, (wrong), ("caps %" GST_PTR_FORMAT, in));
     if (!known) return FALSE;
     begin_anew(state);
-    state.reduced = vision::analysis_size(
-        {GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)}, kFollowedWidth);
-    state.picture.resize(state.reduced);
+    cerberus_person_verify_self(transform)->priv->ask = true;
     return TRUE;
   });
 }
@@ -317,16 +311,6 @@ gboolean cerberus_person_verify_sink_event(GstBaseTransform* transform, GstEvent
   if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP)
     cerberus::guarded(transform, [&] { begin_anew(cerberus_person_verify_self(transform)->priv->state); });
   return GST_BASE_TRANSFORM_CLASS(cerberus_person_verify_parent_class())->sink_event(transform, event);
-}
-
-vision::Track track_of(const CerberusRegion& region) {
-  vision::Track track;
-  track.id = region.tracked ? region.id : 0;
-  track.box = {region.x, region.y, region.width, region.height};
-  track.vx = region.vx, track.vy = region.vy;
-  track.state = static_cast<vision::TrackState>(region.state);
-  track.kind = static_cast<vision::RegionKind>(region.kind);
-  return track;
 }
 
 // Regions of interest of other elements.
@@ -342,81 +326,45 @@ void read_foreign(State& state, GstBuffer* buffer) {
   }
 }
 
-// What is not tracked gets identities that it keeps from frame to frame.
 void read_regions(State& state, GstBuffer* buffer) {
-  std::swap(state.motion, state.motion_before);
-  state.before.clear(), state.motion.clear();
+  state.before.clear();
   state.foreign = !cerberus_buffer_regions_known(buffer);
-  if (state.foreign) {
-    read_foreign(state, buffer);
-  } else {
-    g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
-    for (guint i = 0; i < regions->len; ++i)
-      state.before.push_back(*static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i)));
-  }
-  for (const CerberusRegion& region : state.before) state.motion.push_back(track_of(region));
-  vision::keep_identities(state.motion_before, state.motion, state.last_untracked);
+  if (state.foreign) return read_foreign(state, buffer);
+  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
+  for (guint i = 0; i < regions->len; ++i)
+    state.before.push_back(*static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i)));
 }
 
-void attach(State& state, GstBuffer* buffer, std::span<const vision::EvidenceResult> results,
-            bool persons_only) {
-  state.after.clear();
-  for (const vision::EvidenceResult& found : results) {
-    if (!found.person && (persons_only || state.foreign)) continue;
-    CerberusRegion region;
-    cerberus_region_init(&region);
-    if (found.motion >= 0) {
-      region = state.before[static_cast<std::size_t>(found.motion)];
-    } else {
-      region.vx = found.velocity.x, region.vy = found.velocity.y;
-      region.age = cerberus::plugin::clock_time(found.age);
-      region.state = static_cast<CerberusRegionState>(found.state);
-    }
-    region.id = found.id, region.tracked = TRUE;
-    region.x = found.box.x, region.y = found.box.y;
-    region.width = found.box.width, region.height = found.box.height;
-    region.person = found.person;
-    if (found.person) region.confidence = found.confidence;
-    region.kind =
-        found.person ? CERBERUS_REGION_KIND_PERSON_LIKE : static_cast<CerberusRegionKind>(found.kind);
-    state.after.push_back(region);
-  }
+void attach(State& state, GstBuffer* buffer, std::vector<CerberusRegion>& found, bool persons_only) {
   if (state.foreign && persons_only)
     while (GstMeta* meta = gst_buffer_get_meta(buffer, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE))
       if (!gst_buffer_remove_meta(buffer, meta)) break;
-  if (state.foreign && state.after.empty()) return;
-  g_autoptr(GPtrArray) array = g_ptr_array_new();
-  for (CerberusRegion& region : state.after) g_ptr_array_add(array, &region);
+  if (state.foreign && found.empty()) return;
+  g_autoptr(GPtrArray) array = cerberus::plugin::array_of(found);
   cerberus_buffer_set_regions(buffer, array);
 }
 
-// A look that is due is taken in: live where its result is there, else it is waited for. nullopt: there is none, or in
-// `refusal` why the detector cannot be used.
-std::optional<vision::EvidenceLook> take_in(State& state, GstClockTime now,
-                                            std::optional<std::string>& refusal) {
+// A look that is due ends: live where its result is there, else it is waited for. Returns why the detector cannot be
+// used; nullopt: it can.
+std::optional<std::string> end_look(State& state, GstClockTime now) {
   if (!GST_CLOCK_TIME_IS_VALID(state.looked)) return std::nullopt;
   if (state.live.value_or(true) ? !state.worker.is_done() : now < state.looked + kDelay) return std::nullopt;
   const GstClockTime looked = std::exchange(state.looked, GST_CLOCK_TIME_NONE);
   const std::vector<vision::PersonDetection>& found = state.worker.wait();
-  refusal = state.worker.refusal();
-  if (refusal) return std::nullopt;
-  state.bodies.clear();
+  if (const auto& refusal = state.worker.refusal()) return refusal;
+  state.looks.ends = state.number;
   for (const vision::PersonDetection& body : found) {
     GST_LOG("%" GST_TIME_FORMAT ": %.0f,%.0f %.0fx%.0f, score %.2f", GST_TIME_ARGS(looked), body.box.x,
             body.box.y, body.box.width, body.box.height, body.score);
-    state.bodies.push_back(
+    state.looks.bodies.push_back(
         {body.box, cerberus::plugin::evidence_score(body.score, state.threshold, state.use)});
   }
-  vision::EvidenceLook look{state.bodies};
-  if (GST_CLOCK_TIME_IS_VALID(state.looked_before))
-    look.seconds = static_cast<double>(looked - state.looked_before) / GST_SECOND;
-  state.looked_before = looked;
-  return look;
+  return std::nullopt;
 }
 
 // The next look, where one is due, at the mapped frame.
-void look(State& state, const vision::PictureSource& source, vision::Size size, GstClockTime now,
-          const Settings& settings) {
+void begin_look(State& state, const vision::PictureSource& source, vision::Size size, GstClockTime now,
+                const Settings& settings) {
   auto period = static_cast<GstClockTime>(GST_SECOND / settings.rate);
   if (!GST_CLOCK_TIME_IS_VALID(state.next_look))
     state.next_look = now + static_cast<GstClockTime>(settings.phase * static_cast<double>(period));
@@ -424,11 +372,21 @@ void look(State& state, const vision::PictureSource& source, vision::Size size, 
   const auto taken = static_cast<double>(state.worker.duration().count());  // by the last one
   state.worker.picture().take(source, 0, 0, size, state.worker.sees_colours());
   state.worker.begin();
-  state.tracker.begin_look();
   state.looked = now;
+  if (++state.number == 0) state.number = 1;
+  state.looks.begins = state.number;
   if (state.live.value_or(true)) period = std::max(period, static_cast<GstClockTime>(taken / settings.cpu));
   // On the beat, unless a look took longer than that.
   state.next_look = (now - state.next_look > period / 2 ? now : state.next_look) + period;
+}
+
+// At the first frame after caps or RECONFIGURE, when all elements downstream have received the caps.
+void ask(GstBaseTransform* transform, Private& priv) {
+  State& state = priv.state;
+  if (!state.live) state.live = cerberus::plugin::is_live(GST_BASE_TRANSFORM_SINK_PAD(transform));
+  if (!priv.ask.exchange(false)) return;
+  const bool tracks = !cerberus::plugin::tracker_takes_looks(GST_BASE_TRANSFORM_SRC_PAD(transform));
+  if (std::exchange(state.tracks, tracks) != tracks) forget(state);
 }
 
 GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, GstBuffer* buffer) {
@@ -436,7 +394,7 @@ GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, G
     Private& priv = *cerberus_person_verify_self(transform)->priv;
     State& state = priv.state;
     const Settings settings = priv.settings.snapshot();
-    if (!state.live) state.live = cerberus::plugin::is_live(GST_BASE_TRANSFORM_SINK_PAD(transform));
+    ask(transform, priv);
     cerberus::VideoFrame frame(state.info, buffer, GST_MAP_READ);
     const std::string wrong = frame ? "" : "A frame cannot be read: its tracks are not verified.";
     if (state.frame.is_new(wrong))
@@ -455,7 +413,7 @@ GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, G
     const vision::CameraFollower::Step camera =
         state.camera.next(cerberus::plugin::path_point(buffer), std::exchange(state.running, stamp), size);
     const bool cut = !step.fresh && (camera.link == Link::cut || camera.link == Link::lost);
-    if (cut) state.tracker.reset(), drop_look(state);
+    if (cut) drop_look(state);
     const double seconds = step.seconds > 0 ? step.seconds : kUsualStep;
     GstClockTime now = cerberus::plugin::clock_time(step.time);
     const bool known = GST_CLOCK_TIME_IS_VALID(now), before = GST_CLOCK_TIME_IS_VALID(state.last);
@@ -465,29 +423,39 @@ GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, G
 
     vision::PictureSource source = cerberus::picture_source(*frame.get());
     source.luma = state.stretch.stretched(source.luma);
-    state.scaler.scale(source.luma, state.picture.view());
-    vision::EvidenceFrame seen;
-    seen.seconds = seconds;
-    seen.fresh = step.fresh || cut;
-    seen.size = size;
-    seen.picture = state.picture.view();
-    seen.motion = camera.motion.transform;
-    seen.still = camera.motion.still;  // also where nothing upstream measures it
-    if (const CerberusCameraMotion* measured = cerberus_buffer_peek_camera_motion(buffer))
-      seen.calm = measured->calm;
-    read_regions(state, buffer);
-    std::optional<std::string> refusal;
-    const auto looked = take_in(state, now, refusal);
-    if (refusal) {
+    state.looks = {};
+    state.looks.persons_only = settings.require == REQUIRE_PERSON;
+    if (const auto refusal = end_look(state, now)) {
       refuse_model(transform, *refusal);
       return GST_FLOW_ERROR;
     }
-    const auto results = state.tracker.update(seen, state.motion, looked);
-    look(state, source, size, now, settings);
+    begin_look(state, source, size, now, settings);
+    if (!state.tracks) {
+      cerberus::plugin::set_person_looks(buffer, state.looks);
+      return GST_FLOW_OK;
+    }
+    cerberus::plugin::EvidenceInput seen;
+    seen.size = size;
+    seen.luma = source.luma;
+    seen.seconds = seconds;
+    seen.fresh = step.fresh || cut;
+    seen.motion = camera.motion;  // still where nothing upstream measures it
+    if (const CerberusCameraMotion* measured = cerberus_buffer_peek_camera_motion(buffer))
+      seen.calm = measured->calm;
+    read_regions(state, buffer);
+    auto& found =
+        state.evidence.update(seen, state.before, state.looks, state.looks.persons_only || state.foreign);
     frame.unmap();
-    attach(state, buffer, results, settings.require == REQUIRE_PERSON);
+    attach(state, buffer, found, state.looks.persons_only);
     return GST_FLOW_OK;
   });
+}
+
+// RECONFIGURE is sent, among others, when an element is linked downstream.
+gboolean cerberus_person_verify_src_event(GstBaseTransform* transform, GstEvent* event) {
+  if (GST_EVENT_TYPE(event) == GST_EVENT_RECONFIGURE)
+    cerberus_person_verify_self(transform)->priv->ask = true;
+  return GST_BASE_TRANSFORM_CLASS(cerberus_person_verify_parent_class())->src_event(transform, event);
 }
 
 // The tracker behind judges itself what motion alone supports.
@@ -502,6 +470,7 @@ void cerberus_person_verify_init(CerberusPersonVerify* self) {
   gst_video_info_init(&self->priv->state.info);
   gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
   gst_base_transform_set_passthrough(GST_BASE_TRANSFORM(self), FALSE);
+  gst_base_transform_set_gap_aware(GST_BASE_TRANSFORM(self), TRUE);  // the mark of a repeated picture stays
 }
 
 void cerberus_person_verify_class_init(CerberusPersonVerifyClass* klass) {
@@ -519,6 +488,7 @@ void cerberus_person_verify_class_init(CerberusPersonVerifyClass* klass) {
   transform->set_caps = cerberus_person_verify_set_caps;
   transform->query = cerberus_person_verify_query;
   transform->sink_event = cerberus_person_verify_sink_event;
+  transform->src_event = cerberus_person_verify_src_event;
   transform->transform_ip = cerberus_person_verify_transform_ip;
 }
 
