@@ -236,7 +236,7 @@ void Detection::complain_of_scene(double seconds) {
                         ("Much of the scene moves in ways that a turn of the camera does not explain: the "
                          "picture blurs or shakes, or "
                          "the camera drives past what is near. Only what clearly moves by itself is found "
-                         "there. To find people there, put `personverify` behind."),
+                         "there. To find people there, put `personverify` in front or behind."),
                         ("tracks without more motion inside than around them are left out"));
 }
 

@@ -18,7 +18,9 @@
  * Where the camera's motion does not explain the scene (the picture blurs or shakes, or the camera drives past near
  * things), an object is published only while more changes inside its box than around it; an info message says so, once
  * a stream. `personverify` behind judges all of them itself, and gets them all: behind a `tee` every branch gets them,
- * also one without `personverify`. This needs the planes of the stages, too.
+ * also one without `personverify`. This needs the planes of the stages, too. With `personverify` in front objects are followed
+ * and judged here by both witnesses, what moves and what the detector sees, as that element says it: persons have its
+ * identities and types, in the messages, too.
  *
  * Posts `cerberus-motion` element messages: `state=started` with the objects when the first appears, `state=ended` when
  * none was there for `hold-time`, at the end of the stream and when the element stops, with the objects of the last

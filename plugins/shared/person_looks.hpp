@@ -14,8 +14,10 @@ namespace cerberus::plugin {
 
 // What one frame says about looks. Both may be true of it: the result is that of an earlier look.
 struct PersonLooks {
-  guint begins = 0;            // number of the look that begins at this frame; 0: none
-  guint ends = 0;              // number of the look whose result this is; 0: none
+  guint begins = 0;  // number of the look that begins at this frame; 0: none
+  // Number of the look whose result this is; 0: none. It is on later frames as well, until the next result is there:
+  // frames may be dropped on their way.
+  guint ends = 0;
   bool of_this_frame = false;  // the result is of a look that began and ended here; it has no number
   std::vector<vision::PersonDetection> bodies;  // of the result, as of vision::EvidenceLook: frame pixels
   bool persons_only = false;                    // tracks that no look has shown are not published

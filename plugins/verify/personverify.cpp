@@ -7,8 +7,8 @@
  *
  * A curtain, a clock and a car move, too, and before a camera that shakes or drives everything does. This element shows the
  * whole frame to a detector for people, on a thread of its own and `rate` times a second of running time, and follows with two
- * witnesses: what moves, as `motiondetect` upstream tracks it, and what the detector sees. It publishes tracks of its own
- * in place of those upstream:
+ * witnesses: what moves, as `motiondetect` tracks it, and what the detector sees. It publishes tracks of its own in place of
+ * those of `motiondetect`:
  *
  * - each track has one sum of evidence. A look of the detector adds to it by its score, or takes from it where it does not
  *   show the track; motion inside the box and motion tracks add, rest in a calm scene takes away. What has not moved
@@ -20,7 +20,11 @@
  * - a motion track that holds several people is replaced by one region for each of them;
  * - `require=person` leaves out what no look has shown: `pirfusion` and `pantiltsink` behind then follow persons only.
  *
- * The tracker upstream passes on to this element what it would doubt by itself: see `motiontrack`.
+ * It stands behind `motiondetect` or in front of it, with the same result. Behind, the tracker upstream passes on to this
+ * element what it would doubt by itself: see `motiontrack`. In front of `motiondetect` or `motiontrack` it only looks: what it
+ * has seen goes along with the frames, and the tracker downstream follows by both witnesses and publishes, also in its
+ * messages. Where the tracker is in one branch of a `tee`, the others get no regions. What it has seen goes through whatever
+ * copies, converts or scales the picture, and is lost where it is cropped.
  *
  * People are found by OpenCV's default people detector (histograms of oriented gradients, trained on INRIA's data) or with
  * `detector=daimler` by its Daimler detector, both in a picture of 480 lines: upright ones who are at least a fifth, or a
@@ -62,14 +66,14 @@
  * frame waits for it: two runs give the same bytes.
  *
  * Pads: one sink, one src, raw video in system memory, in every format that the stages read; works in place, on the
- * regions of `motiondetect`, or, where there are none, on #GstVideoRegionOfInterestMeta of other elements. Those stay
+ * regions of `motiondetect`, or, without a tracker in the line, on #GstVideoRegionOfInterestMeta of other elements. Those stay
  * on the buffer (with `require=person` they are removed), and the persons among them are attached as regions of their
  * own.
  *
  * ## Example launch lines
  * |[
  * gst-launch-1.0 videotestsrc num-buffers=60 ! motiondetect ! personverify ! motionjson ! fdsink
- * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect ! personverify require=person ! motionoverlay ! \
+ * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! personverify require=person ! motiondetect ! motionoverlay ! \
  *     videoconvert ! autovideosink
  * ]|
  *
@@ -203,7 +207,7 @@ struct State {  // streaming thread only
   vision::CameraFollower camera;
   GstClockTime running = GST_CLOCK_TIME_NONE;  // of the last frame
   vision::LookWorker worker;
-  cerberus::plugin::PersonLooks looks;        // of this frame
+  cerberus::plugin::PersonLooks looks;        // of this frame; a result stays until the next one is there
   guint number = 0;                           // of the last look
   GstClockTime looked = GST_CLOCK_TIME_NONE;  // time of the frame of the look in progress
   std::optional<bool> live;
@@ -231,6 +235,7 @@ CERBERUS_DEFINE_TYPE(CerberusPersonVerify, cerberus_person_verify, GstBaseTransf
 void drop_look(State& state) {
   if (GST_CLOCK_TIME_IS_VALID(state.looked)) state.worker.wait();
   state.looked = GST_CLOCK_TIME_NONE;
+  state.looks = {};
 }
 
 void forget(State& state) {
@@ -353,6 +358,7 @@ std::optional<std::string> end_look(State& state, GstClockTime now) {
   const std::vector<vision::PersonDetection>& found = state.worker.wait();
   if (const auto& refusal = state.worker.refusal()) return refusal;
   state.looks.ends = state.number;
+  state.looks.bodies.clear();
   for (const vision::PersonDetection& body : found) {
     GST_LOG("%" GST_TIME_FORMAT ": %.0f,%.0f %.0fx%.0f, score %.2f", GST_TIME_ARGS(looked), body.box.x,
             body.box.y, body.box.width, body.box.height, body.score);
@@ -423,7 +429,7 @@ GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, G
 
     vision::PictureSource source = cerberus::picture_source(*frame.get());
     source.luma = state.stretch.stretched(source.luma);
-    state.looks = {};
+    state.looks.begins = 0;
     state.looks.persons_only = settings.require == REQUIRE_PERSON;
     if (const auto refusal = end_look(state, now)) {
       refuse_model(transform, *refusal);

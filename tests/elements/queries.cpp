@@ -10,6 +10,8 @@
 
 #include "support.h"
 
+#include "../../plugins/shared/person_looks.hpp"
+
 namespace {
 
 using cerberus::plugin::ask_for_record;
@@ -63,6 +65,25 @@ START_TEST(every_element_says_what_it_wants) {
 }
 END_TEST
 
+START_TEST(a_tracker_anywhere_behind_takes_looks) {
+  const std::pair<const char*, bool> cases[] = {
+      {"motiondetect ! identity", true},
+      {"queue ! videoconvert ! motiondetect ! identity", true},
+      {"cameramotion ! threeframediff ! fuzzythreshold ! motionregions ! motiontrack ! identity", true},
+      {"tee name=t ! fakesink async=false t. ! queue ! motiontrack ! fakesink async=false t. ! identity",
+       true},
+      {"cameramotion ! motionregions ! identity", false},
+      {"identity", false},
+  };
+  for (const auto& [launch, taken] : cases) {
+    GstHarness* h = gst_harness_new_parse(launch);
+    gst_harness_set_src_caps_str(h, kCaps);
+    fail_unless(cerberus::plugin::tracker_takes_looks(h->srcpad) == taken, "%s", launch);
+    gst_harness_teardown(h);
+  }
+}
+END_TEST
+
 START_TEST(an_unlinked_pad_wants_nothing) {
   g_autoptr(GstPad) pad = gst_pad_new("src", GST_PAD_SRC);
   gst_object_ref_sink(pad);
@@ -91,6 +112,7 @@ static Suite* queries_suite(void) {
   tcase_add_test(tc, the_query_passes_other_elements);
   tcase_add_test(tc, all_branches_of_a_tee_are_asked_and_each_adds_what_it_wants);
   tcase_add_test(tc, every_element_says_what_it_wants);
+  tcase_add_test(tc, a_tracker_anywhere_behind_takes_looks);
   tcase_add_test(tc, an_unlinked_pad_wants_nothing);
   tcase_add_test(tc, other_queries_are_not_it);
   return s;
