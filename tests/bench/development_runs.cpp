@@ -34,13 +34,13 @@ class Mirror {
   std::vector<std::uint8_t> pixels_;
 };
 
-// Figures of every detector as it is and mirrored, two after each other. Empty: the sequence could not be read.
-std::vector<Figures> run_detectors(const DevelopmentSequence& sequence, int width,
+// Every detector as it is and mirrored, two after each other. Empty: the sequence could not be read.
+std::vector<Outcome> run_detectors(const DevelopmentSequence& sequence, int width,
                                    const std::vector<DetectorSettings>& detectors) {
   struct Run {
     bool mirrored;
     SetDetector detector;
-    DevelopmentRun figures;
+    DevelopmentRun outcome;
   };
   std::vector<Run> runs;
   for (const DetectorSettings& settings : detectors)
@@ -49,19 +49,19 @@ std::vector<Figures> run_detectors(const DevelopmentSequence& sequence, int widt
   Mirror mirror;
   const bool measured = for_each_sample(sequence.source + kDecoded, [&](GstSample* sample, int) {
     for (Run& r : runs)
-      r.figures.add(
+      r.outcome.add(
           r.detector.find(sample, r.mirrored ? SetDetector::View(std::ref(mirror)) : SetDetector::View()),
-          size_of(sample).width, seconds_of(sample));
+          size_of(sample), seconds_of(sample));
   });
-  std::vector<Figures> figures;
+  std::vector<Outcome> outcomes;
   for (const Run& r : runs)
-    if (measured) figures.push_back(r.figures.figures());
-  return figures;
+    if (measured) outcomes.push_back(r.outcome.outcome());
+  return outcomes;
 }
 
-std::vector<Figures> run_elements(const DevelopmentSequence& sequence, int width,
+std::vector<Outcome> run_elements(const DevelopmentSequence& sequence, int width,
                                   const std::string& elements) {
-  std::vector<Figures> figures;
+  std::vector<Outcome> outcomes;
   for (const bool mirrored : {false, true}) {
     std::string line = elements;
     if (const std::size_t at = line.find("motiondetect"); at != std::string::npos)
@@ -71,21 +71,29 @@ std::vector<Figures> run_elements(const DevelopmentSequence& sequence, int width
                              (mirrored ? " ! videoflip video-direction=horiz ! videoconvert" : "") +
                              " ! video/x-raw,format=I420 ! " + line + " ! appsink name=out sync=false",
                          [&](GstSample* sample, int) {
-                           run.add(found_on(gst_sample_get_buffer(sample)), size_of(sample).width,
+                           run.add(found_on(gst_sample_get_buffer(sample)), size_of(sample),
                                    seconds_of(sample));
                          }))
       return {};
-    figures.push_back(run.figures());
+    outcomes.push_back(run.outcome());
   }
-  return figures;
+  return outcomes;
 }
 
-using RunsAtWidth = std::function<std::vector<Figures>(const DevelopmentSequence&, int width)>;
+void add(Outcome& sum, const Outcome& run, double share) {
+  for (std::size_t f = 0; f < run.figures.size(); ++f) sum.figures[f] += share * run.figures[f];
+  const auto append = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
+  append(sum.first_boxes, run.first_boxes);
+  append(sum.widths, run.widths);
+  append(sum.heights, run.heights);
+}
 
-std::vector<SequenceMeans> spread(const std::vector<DevelopmentSequence>& sequences,
-                                  const std::vector<int>& widths, std::size_t detectors,
-                                  const RunsAtWidth& runs) {
-  std::vector<std::vector<Figures>> done(sequences.size() * widths.size());
+using RunsAtWidth = std::function<std::vector<Outcome>(const DevelopmentSequence&, int width)>;
+
+std::vector<SequenceOutcomes> spread(const std::vector<DevelopmentSequence>& sequences,
+                                     const std::vector<int>& widths, std::size_t detectors,
+                                     const RunsAtWidth& runs) {
+  std::vector<std::vector<Outcome>> done(sequences.size() * widths.size());
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     for (std::size_t job = next++; job < done.size(); job = next++)
@@ -96,26 +104,26 @@ std::vector<SequenceMeans> spread(const std::vector<DevelopmentSequence>& sequen
     for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i)
       workers.emplace_back(work);
   }
-  std::vector<SequenceMeans> all;
+  std::vector<SequenceOutcomes> all;
   for (std::size_t s = 0; s < sequences.size(); ++s) {
-    SequenceMeans means(detectors, Figures{});
+    SequenceOutcomes outcomes(detectors);
     for (std::size_t w = 0; w < widths.size(); ++w) {
-      const std::vector<Figures>& found = done[s * widths.size() + w];
-      if (found.empty()) means.clear();
-      for (std::size_t i = 0; i < means.size(); ++i)
-        for (std::size_t f = 0; f < Figures{}.size(); ++f)
-          means[i][f] += (found[2 * i][f] + found[2 * i + 1][f]) / (2. * static_cast<double>(widths.size()));
+      const std::vector<Outcome>& found = done[s * widths.size() + w];
+      if (found.empty()) outcomes.clear();
+      for (std::size_t i = 0; i < outcomes.size(); ++i)
+        for (const Outcome& run : {found[2 * i], found[2 * i + 1]})
+          add(outcomes[i], run, 1 / (2. * static_cast<double>(widths.size())));
     }
-    all.push_back(means);
+    all.push_back(outcomes);
   }
   return all;
 }
 
 }  // namespace
 
-std::vector<SequenceMeans> measure(const std::vector<DevelopmentSequence>& sequences,
-                                   const std::vector<int>& widths,
-                                   const std::vector<DetectorSettings>& detectors) {
+std::vector<SequenceOutcomes> measure(const std::vector<DevelopmentSequence>& sequences,
+                                      const std::vector<int>& widths,
+                                      const std::vector<DetectorSettings>& detectors) {
   return spread(sequences, widths, detectors.size(), [&](const DevelopmentSequence& sequence, int width) {
     return run_detectors(sequence, width, detectors);
   });
@@ -136,8 +144,8 @@ std::vector<double> measure_calm(const DevelopmentSequence& sequence, const std:
   return shares;
 }
 
-std::vector<SequenceMeans> measure(const std::vector<DevelopmentSequence>& sequences,
-                                   const std::vector<int>& widths, const std::string& elements) {
+std::vector<SequenceOutcomes> measure(const std::vector<DevelopmentSequence>& sequences,
+                                      const std::vector<int>& widths, const std::string& elements) {
   return spread(sequences, widths, 1, [&](const DevelopmentSequence& sequence, int width) {
     return run_elements(sequence, width, elements);
   });

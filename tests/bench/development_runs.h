@@ -10,17 +10,17 @@
 
 namespace cerberus::bench {
 
-// Means of the runs of a sequence, by detector; empty: it could not be read.
-using SequenceMeans = std::vector<Figures>;
+// Of all runs of a sequence, by detector; empty: it could not be read.
+using SequenceOutcomes = std::vector<Outcome>;
 
 // Of every sequence. The library's detectors see each frame once it is decoded; sequences and widths are spread over the
 // processor's cores.
-std::vector<SequenceMeans> measure(const std::vector<DevelopmentSequence>& sequences,
-                                   const std::vector<int>& widths,
-                                   const std::vector<DetectorSettings>& detectors);
+std::vector<SequenceOutcomes> measure(const std::vector<DevelopmentSequence>& sequences,
+                                      const std::vector<int>& widths,
+                                      const std::vector<DetectorSettings>& detectors);
 // The same of one detector: a launch line, in which motiondetect gets the width.
-std::vector<SequenceMeans> measure(const std::vector<DevelopmentSequence>& sequences,
-                                   const std::vector<int>& widths, const std::string& elements);
+std::vector<SequenceOutcomes> measure(const std::vector<DevelopmentSequence>& sequences,
+                                      const std::vector<int>& widths, const std::string& elements);
 
 // How calm the scene is in every frame of all runs (CameraMotionResult::calm). Empty: the sequence could not be read.
 std::vector<double> measure_calm(const DevelopmentSequence& sequence, const std::vector<int>& widths);

@@ -5,8 +5,11 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <regex>
+
+#include "hidden_people.h"
 
 namespace cerberus::bench {
 namespace fs = std::filesystem;
@@ -14,6 +17,8 @@ namespace {
 
 constexpr int kUsualRate = 25;  // frames a second, where SOURCE.txt names none
 constexpr double kOverlaps = .3, kRight = .5;
+// Of the picture's height: the person in a window of OpenCV's people detector, .76 of it, in a picture of 480 lines.
+constexpr double kLeastPlain = .2, kMostPlain = .75;
 
 // The first file of a folder by its name, of those whose names end in `ending`.
 std::optional<fs::path> first_file(const fs::path& folder, const char* ending) {
@@ -49,6 +54,15 @@ std::optional<std::string> source_in(const fs::path& folder) {
   return std::nullopt;
 }
 
+// See FirstBox. Annotation ends where the picture does, so that a box at its edge may be of a part.
+bool is_plain(const Person& person, const std::vector<Person>& people, vision::Size size) {
+  const vision::Box& box = person.box;
+  const bool inside =
+      box.x >= 1 && box.y >= 1 && box.right() <= size.width - 1 && box.bottom() <= size.height - 1;
+  return inside && !is_covered(person, people) && box.height >= kLeastPlain * size.height &&
+         box.height <= kMostPlain * size.height;
+}
+
 }  // namespace
 
 std::vector<DevelopmentSequence> development_sequences(const fs::path& data) {
@@ -80,32 +94,57 @@ const std::array<const char*, 4>& figure_names(Labels labels) {
   return labels == Labels::all ? all : labels == Labels::one ? one : nobody;
 }
 
-DevelopmentRun::DevelopmentRun(const DevelopmentSequence& sequence, bool mirrored)
-    : labels_(sequence.labels), mirrored_(mirrored) {
-  if (labels_ == Labels::all) people_ = read_people(sequence.truth, 1e9);
-  if (labels_ == Labels::one) boxes_ = read_boxes(sequence.truth);
+People read_truth(const DevelopmentSequence& sequence) {
+  if (sequence.labels == Labels::nobody) return {};
+  if (sequence.labels == Labels::all) return read_people(sequence.truth, 1e9);
+  People people;
+  int frame = 0;
+  for (const vision::Box& box : read_boxes(sequence.truth)) {
+    if (box.width > 1 && box.height > 1) people[frame] = {{1, box}};  // else absent
+    ++frame;
+  }
+  return people;
 }
 
-void DevelopmentRun::add(const std::vector<Found>& found, int width, double time) {
-  const auto as_seen = [&](vision::Box box) {
-    if (mirrored_) box.x = width - box.right();
-    return box;
-  };
+DevelopmentRun::DevelopmentRun(const DevelopmentSequence& sequence, bool mirrored)
+    : labels_(sequence.labels), mirrored_(mirrored), people_(read_truth(sequence)) {}
+
+void DevelopmentRun::add(const std::vector<Found>& found, vision::Size size, double time) {
   if (frames_ == 0) first_ = time;
   last_ = time;
   const int n = frames_++;
   with_box_ += !found.empty();
   if (labels_ == Labels::nobody)
     for (const Found& f : found) identities_.insert(f.person.id);
-  if (const auto truth = people_.find(n); truth != people_.end()) {
-    std::vector<Person> people = truth->second;
-    for (Person& p : people) p.box = as_seen(p.box);
-    score_.add(people, people_of(found));
+  const auto truth = people_.find(n);
+  if (truth == people_.end()) return;
+  std::vector<Person> people = truth->second;
+  if (mirrored_)
+    for (Person& p : people) p.box.x = size.width - p.box.right();
+  const std::vector<Person> persons = people_of(found);
+  if (labels_ == Labels::all) score_.add(people, persons);
+  for (const Person& p : people) {
+    if (labels_ == Labels::one) add_labelled(found, p.box);
+    add_person(p, people, persons, size, time);
   }
-  if (n < static_cast<int>(boxes_.size())) {
-    const vision::Box box = boxes_[static_cast<std::size_t>(n)];
-    if (box.width > 1 && box.height > 1) add_labelled(found, as_seen(box));  // else absent
+}
+
+void DevelopmentRun::add_person(const Person& person, const std::vector<Person>& people,
+                                const std::vector<Person>& found, vision::Size size, double time) {
+  const vision::Box& box = person.box;
+  const auto [at, is_new] = appearances_.try_emplace(person.id);
+  Appearance& life = at->second;
+  if (is_new)
+    life = {time, {person.id, std::numeric_limits<double>::infinity(), is_plain(person, people, size)}};
+  const bool whole = box.x >= 0 && box.y >= 0 && box.right() <= size.width && box.bottom() <= size.height;
+  const auto overlap = [&](const Person& f) { return vision::intersection_over_union(f.box, box); };
+  const auto best = std::ranges::max_element(found, {}, overlap);
+  if (best == found.end() || overlap(*best) < kOverlaps) return;
+  if (whole) {
+    widths_.push_back(best->box.width / box.width);
+    heights_.push_back(best->box.height / box.height);
   }
+  if (overlap(*best) >= kRight) life.first.seconds = std::min(life.first.seconds, time - life.since);
 }
 
 void DevelopmentRun::add_labelled(const std::vector<Found>& found, vision::Box box) {
@@ -119,6 +158,12 @@ void DevelopmentRun::add_labelled(const std::vector<Found>& found, vision::Box b
   right_ += best >= kRight;
   others_ += static_cast<int>(found.size()) - (best >= kOverlaps);
   if (best >= kOverlaps) identities_.insert(identity);
+}
+
+Outcome DevelopmentRun::outcome() const {
+  Outcome outcome{figures(), {}, widths_, heights_};
+  for (const auto& [person, life] : appearances_) outcome.first_boxes.push_back(life.first);
+  return outcome;
 }
 
 Figures DevelopmentRun::figures() const {

@@ -31,10 +31,30 @@ struct DevelopmentSequence {
 };
 // In the order of their names. A folder of the other kinds is not listed.
 std::vector<DevelopmentSequence> development_sequences(const std::filesystem::path& data);
+// Of one labelled object: those frames in which it is not absent.
+People read_truth(const DevelopmentSequence& sequence);
 
 // The figures of a run; what they are depends on the labels: figure_names().
 using Figures = std::array<double, 4>;
 const std::array<const char*, 4>& figure_names(Labels labels);
+
+// When a labelled object had its first box with an IoU of .5 that is no group's.
+struct FirstBox {
+  int person = 0;
+  double seconds = 0;  // since its first labelled frame; infinite: never
+  // In that frame it was whole inside the picture, nearer people hid less than half of it, and it was as high as the
+  // windows of the usual person detector can show: 1/5 to 3/4 of the picture.
+  bool plain = true;
+};
+
+// What a run over a sequence gave, or several of one sequence.
+struct Outcome {
+  Figures figures{};  // means
+  std::vector<FirstBox> first_boxes;
+  // Of the boxes with an IoU of .3 that are no groups': their width and height over the labelled object's, where the
+  // whole of it is in the picture.
+  std::vector<double> widths, heights;
+};
 
 // One run over a sequence. add() takes what was found on frame after frame; mirrored: the pictures were, and the truth is.
 //   all     MOTA (a run below -1 counts as -1), IDF1, precision, recall, at IoU .5; groups claim no person
@@ -43,17 +63,26 @@ const std::array<const char*, 4>& figure_names(Labels labels);
 class DevelopmentRun {
  public:
   DevelopmentRun(const DevelopmentSequence& sequence, bool mirrored);
-  // time: of the frame, in seconds.
-  void add(const std::vector<Found>& found, int width, double time);
-  Figures figures() const;
+  // size: of the frame; time: in seconds.
+  void add(const std::vector<Found>& found, vision::Size size, double time);
+  Outcome outcome() const;
 
  private:
+  struct Appearance {
+    double since = 0;  // time of the first labelled frame
+    FirstBox first;
+  };
+
   void add_labelled(const std::vector<Found>& found, vision::Box box);
+  void add_person(const Person& person, const std::vector<Person>& people, const std::vector<Person>& found,
+                  vision::Size size, double time);
+  Figures figures() const;
 
   Labels labels_;
   bool mirrored_;
-  People people_;                   // all
-  std::vector<vision::Box> boxes_;  // one
+  People people_;
+  std::map<int, Appearance> appearances_;  // by person
+  std::vector<double> widths_, heights_;
   TrackScore score_;
   std::set<int> identities_;
   int frames_ = 0, with_box_ = 0;

@@ -45,7 +45,6 @@ HiddenPeople hidden_people(const Lives& lives, double frame) {
       if (before < 0) continue;
       ++result.asked;
       result.kept += before == after;
-      result.lost += after < 0;
       i = end;
     }
   return result;

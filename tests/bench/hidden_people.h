@@ -22,7 +22,7 @@ using Lives = std::map<int, std::vector<Seen>>;  // by person, in the order of t
 bool is_covered(const Person& person, std::span<const Person> all);
 
 struct HiddenPeople {
-  int asked = 0, kept = 0, lost = 0;  // lost: no track in the second after it
+  int asked = 0, kept = 0;
 };
 // Times of at most 3 s in which a person is hidden, or not annotated between two frames in which he is, and had a track in
 // the second before. frame: s from one to the next.

@@ -61,15 +61,8 @@ std::unique_ptr<vision::WholeFrameDetector> detector_of(const std::string& name)
 // What the looks at one sequence found.
 class Looks {
  public:
-  explicit Looks(const DevelopmentSequence& sequence) : labels_(sequence.labels) {
-    if (labels_ == Labels::all) people_ = read_people(sequence.truth, 1e9);
-    if (labels_ != Labels::one) return;
-    int frame = 0;
-    for (const vision::Box& box : read_boxes(sequence.truth)) {
-      if (box.width > 1 && box.height > 1) people_[frame] = {{1, box}};
-      ++frame;
-    }
-  }
+  explicit Looks(const DevelopmentSequence& sequence)
+      : labels_(sequence.labels), people_(read_truth(sequence)) {}
 
   // bodies: the surest first.
   void add(int frame, const std::vector<vision::PersonDetection>& bodies, double seconds) {

@@ -2,7 +2,7 @@
 // Are tracks of people good, or lucky? On a short sequence a pixel decides who is who, and one decision is worth several
 // switches of identity. So each sequence is measured in 24 variants, twelve analysis widths around the default's, as it is
 // and mirrored, and the means count: with them numbers should be chosen. What the sequences give as they are, which is what
-// is asked for, is measured by bench-quality and bench-fit.
+// is asked for, is measured by bench-quality.
 //
 //   bench-variants [--set STAGE.NAME=VALUE]...     other tuned numbers (parameters.h); judged by the one who looks
 #include <gst/gst.h>
