@@ -26,13 +26,12 @@ constexpr vision::Size kReadable{640, 480};
 
 // The elements of the line that the demo has to do with; borrowed from the pipeline.
 struct Parts {
-  GstElement *file, *camera, *detect, *fusion, *head, *drawn, *json, *mp4;
+  GstElement *file, *camera, *fusion, *head, *drawn, *json, *mp4;
 };
 
 bool find_parts(GstElement* pipeline, Parts& parts) {
-  const std::array<std::pair<GstElement**, const char*>, 8> all{{{&parts.file, "file"},
+  const std::array<std::pair<GstElement**, const char*>, 7> all{{{&parts.file, "file"},
                                                                  {&parts.camera, "camera"},
-                                                                 {&parts.detect, "detect"},
                                                                  {&parts.fusion, "fusion"},
                                                                  {&parts.head, "head"},
                                                                  {&parts.drawn, "drawn"},

@@ -20,24 +20,25 @@ constexpr int kPatience = 60;  // seconds for which the watchdog waits for a fra
 Job::Job(GstElement* pipeline, std::string path, std::string folder, const VideoFile& video)
     : pipeline_(pipeline), path_(std::move(path)), folder_(std::move(folder)), video_(video) {
   decode_with_care(pipeline);
-  g_autoptr(GstElement) detect = gst_bin_get_by_name(GST_BIN(pipeline), "detect");
-  g_autoptr(GstPad) pad = gst_element_get_static_pad(detect, "src");
+  g_autoptr(GstElement) fusion = gst_bin_get_by_name(GST_BIN(pipeline), "fusion");
+  g_autoptr(GstPad) pad = gst_element_get_static_pad(fusion, "src");
   gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_BUFFER, on_frame, this, nullptr);
 }
 
-// Runs in the streaming thread for every frame that motiondetect has looked at.
+// Runs in the streaming thread for every frame with its objects.
 GstPadProbeReturn Job::on_frame(GstPad*, GstPadProbeInfo* info, gpointer data) {
   auto& job = *static_cast<Job*>(data);
   GstBuffer* buffer = GST_PAD_PROBE_INFO_BUFFER(info);
   ++job.frames_;
   if (GST_BUFFER_PTS_IS_VALID(buffer)) job.position_ = GST_BUFFER_PTS(buffer);
-  static const GQuark motion = g_quark_from_static_string("motion");
+  static const GQuark motion = g_quark_from_static_string("motion"),
+                      person = g_quark_from_static_string("person");
   gpointer state = nullptr;
   const std::lock_guard lock(job.mutex_);
   while (GstMeta* meta =
              gst_buffer_iterate_meta_filtered(buffer, &state, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE)) {
     auto* region = reinterpret_cast<GstVideoRegionOfInterestMeta*>(meta);
-    if (region->roi_type == motion) job.objects_.insert(region->id);
+    if (region->roi_type == motion || region->roi_type == person) job.objects_.insert(region->id);
   }
   return GST_PAD_PROBE_OK;
 }

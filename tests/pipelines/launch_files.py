@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs the launch files of pipelines/, with a test source in place of the camera and files in place of screens.
 
-    launch_files.py NAME live|file|444|parsed|head [SERVER]
+    launch_files.py NAME live|file|444|parsed|head|lines [SERVER]
 
 The source is a bouncing ball: grey, so that any colour in the result was drawn by motionoverlay, and moving, so that
 objects are found. Where people are told by their size, it has the shape of one. Networks are the loopback, on ports
@@ -20,7 +20,7 @@ import sys
 import tempfile
 import time
 
-from support import DISTANCE, LIMIT, TOP, ball, gst_launch, json_lines, must, person, run, video
+from support import DISTANCE, LIMIT, TOP, ball, gst_launch, json_lines, must, person, run, video, without_verify
 
 WIDTH, HEIGHT, FRAMES = 320, 240, 75
 
@@ -185,7 +185,7 @@ def test_stages(kind):
 def test_virtualptz(kind):
     size = 160 * 120 * 3 // 2
     finish(start('virtualptz', SOURCE=paced(kind), WIDE=60, VIEW=32.2, WIDTH=160, HEIGHT=120, PAN=16, TILT=12,
-                 SINK='video/x-raw,format=I420 ! filesink location=out.raw'))
+                 PERSONS='', SINK='video/x-raw,format=I420 ! filesink location=out.raw'))
     pictures = frames('out.raw', size)
     assert len(pictures) >= FRAMES // 10, f'{len(pictures)} frames were shown'  # it may drop late ones
     # The wall stands still: where most of the border changes, the window has moved.
@@ -209,10 +209,10 @@ def check_the_loop(lines, width, reach):
         f'the target came nearer to the middle, or was there, in {sum(nearer)} of {len(nearer)} pictures'
 
 
-def closed_loop(kind, name):
+def closed_loop(kind, name, **more):
     pathlib.Path('pir.csv').write_text('0,0,0,0\n0.2,0,0,1\n0.8,0,0,0\n9,0,0,0\n', 'ascii')
     finish(start('closed-loop', SOURCE=source(kind), PIR='pir.csv', MP4=f'{name}.mp4', JSON=f'{name}.jsonl',
-                 WIDTH=160, HEIGHT=120, VIEW=32.2, PAN=16, TILT=12))
+                 WIDTH=160, HEIGHT=120, VIEW=32.2, PAN=16, TILT=12, **more))
     check_players_can_play(f'{name}.mp4', 'qtdemux')
     lines = json_lines(f'{name}.jsonl')
     few, many = (least(kind), most(kind)) if kind == 'live' else (FRAMES, FRAMES)
@@ -234,7 +234,8 @@ def test_closed_loop(kind):
     closed_loop(kind, 'b')
     assert pathlib.Path('a.jsonl').read_bytes() == pathlib.Path('b.jsonl').read_bytes(), 'two runs differ'
     assert lines[0]['pose'] == {'pan': 0, 'tilt': 0, 'moving': False}
-    check_the_loop(lines, 160, 14)
+    # A ball is no person: only motion alone follows it before a head that turns.
+    check_the_loop(closed_loop(kind, 'c', PERSONS=''), 160, 14)
 
 
 def free_ports(count):
@@ -393,6 +394,43 @@ def parsed(process, missing):
     words = shlex.split(finish(process))[2:]  # without gst-launch-1.0 -e
     found = must(run([sys.executable, TOP / 'tests' / 'pipelines' / 'parse.py', *words])).split()
     assert set(found) <= missing, f'{found} are missing'
+
+
+def printed(*settings, env=None):
+    """The line of annotate, and what is said beside it."""
+    done = subprocess.run([TOP / 'pipelines' / 'run', '--print', 'annotate', 'FILE=walk.mp4', *settings], timeout=LIMIT,
+                          text=True, capture_output=True, check=True, env={**os.environ, **(env or {})})
+    return shlex.split(done.stdout), done.stderr
+
+
+def test_persons(_):
+    """Motion and a people detector are in each line where people are looked for; motion alone does where it must."""
+    behind = {'personverify': ['!', 'personverify', '!'], 'none': ['!']}
+
+    def follows(line, words):
+        place = line.index('motiondetect') + 1
+        return line[place:place + len(words)] == words
+
+    is_there = run(['gst-inspect-1.0', 'personverify'])[0] == 0
+    line, said = printed()
+    assert follows(line, behind['personverify' if is_there else 'none'] + ['tee']), line
+    assert is_there != ('personverify is not installed' in said), said
+    line, said = printed('PERSONS=')
+    assert follows(line, behind['none'] + ['tee']) and not said, (line, said)
+    line, said = printed('PERSONS=personverify detector=daimler')
+    assert follows(line, ['!', 'personverify', 'detector=daimler', '!', 'tee']) and not said, (line, said)
+    for path in (TOP / 'pipelines').glob('*.launch'):
+        text = path.read_text('utf-8')
+        assert text.count('! motiondetect') == text.count('${PERSONS}'), f'{path.name} has another number of detectors'
+
+    without = without_verify()
+    line, said = printed(env=without)
+    assert follows(line, behind['none'] + ['tee']), line
+    assert said.count('\n') == 1 and 'personverify is not installed: people are found by motion alone' in said, said
+    os.environ.update(without)
+    said = finish(start('annotate', SOURCE=source('file'), MP4='out.mp4', JSON='out.jsonl'))
+    assert 'found by motion alone' in said, said
+    check_lines('out.jsonl', 'file')
 
 
 def test_hardware(_):
