@@ -60,7 +60,12 @@ class Writer {
     // A telephone's video says how it was held.
     if (has_file) add(" ! videoflip video-direction=auto ! identity sync=true");
     if (source_.kind == SourceKind::world) window();
-    add(" ! motiondetect name=detect ! pirfusion name=fusion");
+    add(" ! motiondetect name=detect");
+    if (camera_.persons.use != PersonsUse::never) {
+      add(" ! personverify name=persons");
+      set_all("persons", camera_.persons.properties);
+    }
+    add(" ! pirfusion name=fusion");
     if (mqtt_ != nullptr) publish();
     add(" ! tee name=found");
     detection();

@@ -70,6 +70,20 @@ struct RecorderSettings {
   Properties properties;  // of eventrecorder
 };
 
+// Whether people are also known by their shape.
+enum class PersonsUse : std::uint8_t {
+  automatic,  // where this machine can: the program decides
+  always,
+  never,
+};
+
+struct PersonsSettings {
+  PersonsUse use = PersonsUse::automatic;
+  Properties properties;  // of personverify
+
+  bool operator==(const PersonsSettings&) const = default;
+};
+
 // The robot's own drive: docs/manual/base.md.
 struct BaseSettings {
   std::string command;       // a program that is given a line for each order
@@ -83,8 +97,9 @@ struct CameraSettings {
   std::string name;
   std::uint32_t line = 0;
   SourceSettings source;
-  double horizontal_fov = 60;         // degrees over the width of the picture
-  Properties detection;               // of motiondetect
+  double horizontal_fov = 60;  // degrees over the width of the picture
+  Properties detection;        // of motiondetect
+  PersonsSettings persons;
   Properties fusion;                  // of pirfusion
   std::optional<Properties> sensors;  // of pirsrc
   std::optional<Properties> head;     // of pantiltsink

@@ -10,6 +10,7 @@
 #include "device_tokens.h"
 #endif
 #include "encoder_choice.h"
+#include "persons_choice.h"
 #include "robot.h"
 #include "robot/settings_file.h"
 #include "settings_trial.h"
@@ -85,6 +86,7 @@ int main(int argc, char** argv) {
     cerberus::robot::SettingsFile file = cerberus::robot::load_settings(path, credentials ? credentials : "");
     if (!file.settings) return file;
     cerberus::robot::choose_encoders(*file.settings);
+    cerberus::robot::choose_persons(*file.settings);
     cerberus::robot::Trial trial = cerberus::robot::try_settings(*file.settings);
     if (lacks != nullptr) *lacks = cerberus::robot::describe(std::move(trial.lacks), path);
     if (trial.mistakes.empty()) return file;

@@ -33,9 +33,13 @@ struct Table {
   std::string_view element, key, name;
 };
 constexpr Table kTables[] = {
-    {"detect", "detection", "[camera.detection]"}, {"fusion", "fusion", "[camera.fusion]"},
-    {"sensors", "sensors", "[camera.sensors]"},    {"head", "head", "[camera.head]"},
-    {"recorder", "recorder", "[camera.recorder]"}, {"mqtt", "mqtt", "[mqtt]"},
+    {"detect", "detection", "[camera.detection]"},
+    {"persons", "persons", "[camera.persons]"},
+    {"fusion", "fusion", "[camera.fusion]"},
+    {"sensors", "sensors", "[camera.sensors]"},
+    {"head", "head", "[camera.head]"},
+    {"recorder", "recorder", "[camera.recorder]"},
+    {"mqtt", "mqtt", "[mqtt]"},
 };
 
 const Table* table_of(std::string_view element) {

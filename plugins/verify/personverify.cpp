@@ -104,6 +104,7 @@
 #include "shared/properties.hpp"
 #include "shared/record.hpp"
 #include "shared/region_conversion.hpp"
+#include "shared/settings_query.hpp"
 #include "shared/video.hpp"
 #include "vision/clocked_times.h"
 #include "vision/frame_history.h"
@@ -257,6 +258,34 @@ void refuse_model(GstBaseTransform* transform, const std::string& why) {
   CERBERUS_ELEMENT_ERROR(transform, RESOURCE, SETTINGS, (why), ("the property model cannot be used"));
 }
 
+cerberus::plugin::DetectorKind kind_of(const Settings& settings) {
+  using Kind = cerberus::plugin::DetectorKind;
+  if (!settings.model.empty()) return Kind::model;
+  return settings.detector == DETECTOR_HOG ? Kind::hog : Kind::daimler;
+}
+
+double threshold_of(const Settings& settings) {
+  return settings.threshold > 0 ? settings.threshold : cerberus::plugin::use_of(kind_of(settings)).threshold;
+}
+
+// nullptr: `wrong` says why.
+auto make_detector(const Settings& settings, std::string& wrong) {
+  return cerberus::plugin::make_whole_frame_detector(kind_of(settings),
+                                                     {.model = cerberus::plugin::model_path(settings.model),
+                                                      .config = settings.config,
+                                                      .labels = settings.labels,
+                                                      .mean = settings.mean,
+                                                      .scale = settings.scale},
+                                                     wrong, cerberus::plugin::kWholeFrameLines,
+                                                     threshold_of(settings));
+}
+
+std::string settings_fault(GstElement* element) {
+  std::string wrong;
+  make_detector(cerberus_person_verify_self(element)->priv->settings.snapshot(), wrong);
+  return wrong;
+}
+
 gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
   return cerberus::guarded(transform, FALSE, [&]() -> gboolean {
     Private& priv = *cerberus_person_verify_self(transform)->priv;
@@ -264,21 +293,10 @@ gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
     state.caps.forget(), state.frame.forget();
     state.live.reset();
     const Settings settings = priv.settings.snapshot();
-    const bool model = !settings.model.empty();
-    const auto kind = model                               ? cerberus::plugin::DetectorKind::model
-                      : settings.detector == DETECTOR_HOG ? cerberus::plugin::DetectorKind::hog
-                                                          : cerberus::plugin::DetectorKind::daimler;
-    state.use = cerberus::plugin::use_of(kind);
-    state.threshold = settings.threshold > 0 ? settings.threshold : state.use.threshold;
+    state.use = cerberus::plugin::use_of(kind_of(settings));
+    state.threshold = threshold_of(settings);
     std::string wrong;
-    auto detector = cerberus::plugin::make_whole_frame_detector(
-        kind,
-        {.model = cerberus::plugin::model_path(settings.model),
-         .config = settings.config,
-         .labels = settings.labels,
-         .mean = settings.mean,
-         .scale = settings.scale},
-        wrong, cerberus::plugin::kWholeFrameLines, state.threshold);
+    auto detector = make_detector(settings, wrong);
     if (!detector) {
       refuse_model(transform, wrong);
       return FALSE;
@@ -487,6 +505,7 @@ void cerberus_person_verify_class_init(CerberusPersonVerifyClass* klass) {
                                         "The Cerberus developers");
   gst_element_class_add_static_pad_template(element, &sink_template);
   gst_element_class_add_static_pad_template(element, &src_template);
+  element->query = cerberus::settings_query<cerberus_person_verify_parent_class, settings_fault>;
 
   GstBaseTransformClass* transform = GST_BASE_TRANSFORM_CLASS(klass);
   transform->start = cerberus_person_verify_start;

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """cerberusd --check refuses each file with which a part of the robot would not start, by the line, the key and the value;
 what this machine lacks is said, too. A file with such a mistake is refused at the start and at SIGHUP as well."""
+import os
 import pathlib
 import re
 import shutil
@@ -11,6 +12,8 @@ import subprocess
 import sys
 import tempfile
 import time
+
+from support import without_verify
 
 CERBERUSD, HAS = sys.argv[1], sys.argv[2:]
 PATIENCE = 60  # seconds for what takes one on an idle machine
@@ -34,6 +37,9 @@ MISTAKES = [
     ('[[camera]]\nname = "gate"\nkind = "rtsp"\nuri = "rtsp://h/a"\nrecord-uri = "rtsp://h/b"\n', 5,
      ['record-uri', '[camera.recorder]']),
     (FRONT + VISCA + BACK + VISCA, 12, ['"device"', 'serial:/dev/ttyS9', 'front']),
+    (FRONT + '[camera.persons]\nrate = 4\nmodel = "./short"\n', 6, ['"model" of [camera.persons]', 'short']),
+    (FRONT + '[camera.persons]\nmodel = "no-such-model.weights"\n', 5, ['"model" of [camera.persons]', 'no-such-model.weights']),
+    (FRONT + '[camera.persons]\nmodel = "./no-such-model.weights"\n', 5, ['"model"', 'no-such-model.weights', 'No such file']),
     # Others of their kinds.
     (FRONT + '[camera.detection]\nzones = "door: in 0,0 1,0"\n', 5, ['zones']),
     (FRONT + '[camera.fusion]\nrules-file = "short"\n', 5, ['rules-file', 'short']),
@@ -137,6 +143,8 @@ LACKS = [
 RIGHT = [
     FRONT,
     FRONT + '[camera.head]\n[camera.sensors]\ndriver = "scripted"\nscript = "0,0,0,0; 1,1,0,0"\n',
+    FRONT + '[camera.persons]\ndetector = "daimler"\nrequire = "person"\n',
+    FRONT + '[camera.persons]\nenabled = false\n',
     FRONT + '[camera.recorder]\nfolder = "deep/recordings"\n' + BACK + '[camera.recorder]\nfolder = "deep/recordings"\n',
     FRONT + '[camera.detection]\nzones = "include 0.1,0.1 0.5,0.1 0.5,0.5"\n[base]\ncommand = "sh -c \'cat > /dev/null\'"\n',
     FRONT + '[webhook]\nurl = "https://h:8443/a?b=c"\nsecret-file = "secret"\n',
@@ -181,7 +189,8 @@ def check(folder, text):
 def built(text):
     """Whether this build has what a file needs."""
     return all(name in HAS for name, words in {'page': '[page]', 'rtsp': '[rtsp]', 'mqtt': '[mqtt]', 'visca': '"visca"',
-                                               'pelco': '"pelco-d"', 'stepper': '"stepper-gpio"', 'servo': '"servo-pwm"', 'gpio': '"gpio"', 'onvif': '"onvif"', 'iio': '"iio"'}.items() if words in text)
+                                               'pelco': '"pelco-d"', 'stepper': '"stepper-gpio"', 'servo': '"servo-pwm"', 'gpio': '"gpio"', 'onvif': '"onvif"', 'iio': '"iio"',
+                                               'persons': '[camera.persons]'}.items() if words in text)
 
 
 def checks(folder):
@@ -201,6 +210,39 @@ def checks(folder):
             wrong.append(f'{text}is right, exit code {code}:\n{said}')
     assert not wrong, '\n'.join(wrong)
     assert not (folder / 'deep').exists(), 'a check makes nothing'
+
+
+def by_motion_alone(folder):
+    """Where personverify is missing a camera goes by motion alone, and a line says so; one that must have it lacks it."""
+    camera = '[[camera]]\nname = "gate"\nkind = "rtsp"\nuri = "rtsp://127.0.0.1/a"\n'
+    alone, by_zones = 'are found by motion alone', '"zones" of [camera.detection]'
+    zones = camera + '[camera.detection]\nzones = "include 0,0 1,0 1,1"\n'
+
+    def said(text, status=0):
+        code, words = check(folder, text)
+        assert code == status, (text, code, words)
+        return words
+    if 'persons' in HAS:
+        assert alone not in said(camera) and alone not in said(FRONT)
+        words = said(zones)
+        assert words.count(alone) == 1 and 'gate' in words and by_zones in words, words
+        assert alone not in said(zones + '[camera.persons]\n')
+    before = dict(os.environ)
+    os.chdir(folder)
+    os.environ.update(without_verify())
+    try:
+        words = said(camera + camera.replace('gate', 'yard'))
+        assert words.count(alone) == 1 and 'personverify is not installed' in words, words
+        words = said(FRONT)  # nobody is in a drawn picture
+        assert alone not in words, words
+        words = said(camera + '[camera.persons]\nenabled = false\n')
+        assert 'personverify' not in words, words
+        words = said(camera + '[camera.persons]\nrequire = "person"\n', 1)
+        assert "robot.toml:1: " in words and 'personverify is not installed' in words, words
+    finally:
+        os.chdir('/')
+        os.environ.clear()
+        os.environ.update(before)
 
 
 def start(folder, log):
@@ -246,6 +288,7 @@ def main():
             (folder / file).chmod(0o600)
         certificates(folder)
         checks(folder)
+        by_motion_alone(folder)
         starts_and_reloads(folder)
 
 

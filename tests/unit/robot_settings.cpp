@@ -557,6 +557,50 @@ START_TEST(a_part_that_failed_or_is_not_configured_is_left_out) {
 }
 END_TEST
 
+START_TEST(people_are_found_by_motion_and_shape_unless_the_file_says_otherwise) {
+  const auto camera = [](const std::string& more) { return settings(kSmallest + more).cameras.at(0); };
+  const auto line = [](const CameraSettings& camera) { return pipeline_text(camera, {}, {}).line; };
+  const std::string both = " ! motiondetect name=detect ! personverify name=persons ! pirfusion ";
+  const CameraSettings open = camera("");
+  ck_assert(open.persons.use == PersonsUse::automatic && open.persons.properties.empty());
+  ck_assert(says(line(open), both));
+  const CameraSettings set = camera(
+      "[camera.persons]\ndetector = \"daimler\"\nrate = 2\ncpu = 0.5\nthreshold = 2\nrequire = \"person\"\n");
+  ck_assert(set.persons.use == PersonsUse::always && says(line(set), both));
+  const PipelineText text = pipeline_text(set, {}, {});
+  ck_assert(assigned(text, "persons", "detector") == "daimler" && assigned(text, "persons", "rate") == "2");
+  ck_assert(assigned(text, "persons", "require") == "person" && assigned(text, "persons", "cpu") == "0.5");
+  const CameraSettings none = camera("[camera.persons]\nenabled = false\ncpu = 0.5\n");
+  ck_assert(none.persons.use == PersonsUse::never);
+  ck_assert(says(line(none), " ! motiondetect name=detect ! pirfusion "));
+  ck_assert(assigned(pipeline_text(none, {}, {}), "persons", "cpu") == "(none)");
+}
+END_TEST
+
+START_TEST(a_model_of_people_is_beside_the_configuration_or_among_the_installed_ones) {
+  const auto model = [](const std::string& path) {
+    const Settings all =
+        settings(kSmallest + "[camera.persons]\nmodel = \"" + path + "\"\nlabels = \"names\"\n");
+    ck_assert(value(all.cameras[0].persons.properties, "labels") == "/etc/robot/names");
+    return value(all.cameras[0].persons.properties, "model");
+  };
+  ck_assert(model("yolo.weights") == "yolo.weights");
+  ck_assert(model("./yolo.weights") == "/etc/robot/./yolo.weights");
+  ck_assert(model("/srv/yolo.weights") == "/srv/yolo.weights");
+}
+END_TEST
+
+START_TEST(what_cannot_be_meant_of_people_is_a_mistake_at_its_line) {
+  const auto wrong = [](const std::string& keys) { return errors(kSmallest + "[camera.persons]\n" + keys); };
+  ck_assert(says(wrong("detector = \"yolo\"\n"), "r.toml:5: \"detector\""));
+  ck_assert(says(wrong("cpu = 2\n"), "r.toml:5: \"cpu\""));
+  ck_assert(says(wrong("require = \"car\"\n"), "r.toml:5: \"require\""));
+  ck_assert(says(wrong("zones = \"\"\n"), "r.toml:5: "));
+  ck_assert(says(wrong("model = \"/m.onnx\"\ndetector = \"hog\"\n"), "r.toml:6: \"detector\" and \"model\""));
+  ck_assert(says(wrong("mean = \"3\"\n"), "r.toml:5: \"mean\" is of a \"model\""));
+}
+END_TEST
+
 START_TEST(each_kind_of_camera_has_its_source_at_the_size_and_rate_that_are_asked_for) {
   const auto text = [](const std::string& keys) {
     const Settings all = settings("[[camera]]\nname = \"c\"\n" + keys);
@@ -766,6 +810,9 @@ int main() {
                          a_broken_state_is_privacy_until_the_next_entry_of_the_schedule,
                          texts_of_the_user_are_assigned_and_never_parsed,
                          a_part_that_failed_or_is_not_configured_is_left_out,
+                         people_are_found_by_motion_and_shape_unless_the_file_says_otherwise,
+                         a_model_of_people_is_beside_the_configuration_or_among_the_installed_ones,
+                         what_cannot_be_meant_of_people_is_a_mistake_at_its_line,
                          each_kind_of_camera_has_its_source_at_the_size_and_rate_that_are_asked_for,
                          what_a_network_camera_records_is_never_encoded_again,
                          the_rtsp_server_listens_on_loopback_and_serves_both_pictures_unless_asked_otherwise,

@@ -31,6 +31,19 @@ constexpr Option kDetection[] = {
     {"hold-stopped", K::seconds, 0, kDay},
 };
 
+constexpr Option kPersons[] = {
+    {"detector", K::choice, 0, 0, "hog daimler"},
+    {"model", K::text},
+    {"config", K::text},
+    {"labels", K::text},
+    {"mean", K::text},
+    {"scale", K::text},
+    {"threshold", K::number, 0, 10},
+    {"rate", K::number, 0.1, 10},
+    {"cpu", K::number, 0.01, 1},
+    {"require", K::choice, 0, 0, "none person"},
+};
+
 constexpr Option kFusion[] = {
     {"rules", K::choice, 0, 0, "complete paper"},
     {"rules-file", K::text},
@@ -129,6 +142,7 @@ class CameraReader {
     check_window();
     if (const TomlValue* table = reader_.table("detection"))
       read_part(*table, "[camera.detection]", kDetection, camera_.detection);
+    if (const TomlValue* table = reader_.table("persons")) read_persons(*table);
     if (const TomlValue* table = reader_.table("fusion"))
       read_part(*table, "[camera.fusion]", kFusion, camera_.fusion);
     if (const TomlValue* table = reader_.table("sensors")) {
@@ -260,6 +274,29 @@ class CameraReader {
         words != nullptr && words->find("password=") != words->npos)
       reader.complain("device-options",
                       "\"device-options\" holds a password: write password-file=... with the path of a file");
+    reader.finish();
+  }
+
+  // With the table a missing element is an error, so that `require` and others are not ignored.
+  void read_persons(const TomlValue& table) {
+    TableReader reader(table, "[camera.persons]", mistakes_);
+    PersonsSettings& persons = camera_.persons;
+    bool enabled = true;
+    reader.truth("enabled", enabled);
+    persons.use = enabled ? PersonsUse::always : PersonsUse::never;
+    reader.properties(kPersons, persons.properties);
+    for (const char* key : {"model", "config", "labels"}) {
+      std::string* path = value_of(persons.properties, key);
+      // personverify itself looks for a model without a folder.
+      if (path == nullptr || (std::string_view(key) == "model" && path->find('/') == path->npos)) continue;
+      *path = below(folder_, *path);
+      files_.push_back({reader.line(key), key, *path, false});
+    }
+    if (reader.has("model") && reader.has("detector"))
+      reader.complain("detector", "\"detector\" and \"model\" are two ways to find people: give one of them");
+    for (const char* key : {"config", "labels", "mean", "scale"})
+      if (reader.has(key) && !reader.has("model"))
+        reader.complain(key, std::string("\"") + key + "\" is of a \"model\", and none is named");
     reader.finish();
   }
 
