@@ -49,6 +49,7 @@ START_TEST(the_first_box_counts_from_the_first_labelled_frame) {
   ck_assert_uint_eq(outcome.first_boxes.size(), 1);
   ck_assert_double_eq_tol(outcome.first_boxes[0].seconds, .2, 1e-9);
   ck_assert(outcome.first_boxes[0].plain);
+  ck_assert_uint_eq(outcome.widths.size(), 2);  // of the last two: groups claim no person
 }
 END_TEST
 
