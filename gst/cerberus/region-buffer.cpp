@@ -139,7 +139,7 @@ struct RegionPacking {
   static GstClockTime frame_time(const GstMeta*) { return GST_CLOCK_TIME_NONE; }  // it has no point in time
   static void exchange(auto& archive, CerberusRegion& r) {
     archive(r.id, r.tracked, r.person, r.kind, r.x, r.y, r.width, r.height, r.confidence, r.vx, r.vy, r.age,
-            r.state, r.bearing, r.distance);
+            r.state, r.bearing, r.distance, r.motion);
   }
   static void pack(const GstMeta* meta, cerberus::publish::Packer& to) {
     CerberusRegion region = reinterpret_cast<const RegionMeta*>(meta)->region;

@@ -13,6 +13,7 @@ constexpr cerberus::Field kFields[] = {
     {"id", Type::count, offsetof(CerberusRegion, id)},
     {"tracked", Type::flag, offsetof(CerberusRegion, tracked)},
     {"person", Type::flag, offsetof(CerberusRegion, person)},
+    {"motion", Type::flag, offsetof(CerberusRegion, motion)},
     {"kind", Type::nick, offsetof(CerberusRegion, kind), cerberus_region_kind_get_type},
     {"age", Type::time, offsetof(CerberusRegion, age)},
     {"state", Type::nick, offsetof(CerberusRegion, state), cerberus_region_state_get_type},
@@ -27,13 +28,14 @@ constexpr cerberus::Field kFields[] = {
     {"distance", Type::known, offsetof(CerberusRegion, distance)},
 };
 
-void nowhere(CerberusRegion& region) {
+void moves_somewhere(CerberusRegion& region) {
   region.bearing = region.distance = NAN;
+  region.motion = TRUE;
 }
 
 }  // namespace
 
-CERBERUS_DEFINE_BOXED(CerberusRegion, cerberus_region, nowhere)
+CERBERUS_DEFINE_BOXED(CerberusRegion, cerberus_region, moves_somewhere)
 CERBERUS_DEFINE_ENUM(CerberusRegionKind, cerberus_region_kind,
                      {CERBERUS_REGION_KIND_PERSON_LIKE, "CERBERUS_REGION_KIND_PERSON_LIKE", "person-like"},
                      {CERBERUS_REGION_KIND_GROUP, "CERBERUS_REGION_KIND_GROUP", "group"},

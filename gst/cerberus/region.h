@@ -44,7 +44,7 @@ typedef enum {
  * CerberusRegion:
  * @id: identity of the track (from 1, stable over frames) if @tracked, else a number within the frame
  * @tracked: @id, @vx, @vy, @age and @state come from a tracker
- * @person: verified to be a person, by `personverify`
+ * @person: a person detector has shown it: that of `personverify`, or another element's whose boxes a tracker has taken
  * @kind: what it is by its size
  * @x: left edge, frame pixels
  * @y: top edge, frame pixels
@@ -59,8 +59,9 @@ typedef enum {
  * @bearing: direction of its centre from the camera's axis (the head's
  *     pan is not in it), degrees, positive to the right; NaN if unknown
  * @distance: metres from the camera; NaN if unknown, as both are of a person whom only a people detector has found
+ * @motion: motion supports it: a track of what moves has its place, or has had it within the last second
  *
- * Something that moves. On a buffer it is also a #GstVideoRegionOfInterestMeta of type `motion` (`person` if @person),
+ * Something that moves, or a person: @motion and @person say which witnesses it has. On a buffer it is also a #GstVideoRegionOfInterestMeta of type `motion` (`person` if @person),
  * which other elements and tools read.
  *
  * Regions follow the picture through copying, converting, scaling and encoding, and are lost where it is cropped. Do
@@ -78,9 +79,10 @@ typedef struct _CerberusRegion {
   GstClockTime age;
   CerberusRegionState state;
   gdouble bearing, distance;
+  gboolean motion;
 
   /*< private >*/
-  gpointer _cerberus_reserved[GST_PADDING];
+  gpointer _cerberus_reserved[GST_PADDING - 1];
 } CerberusRegion;
 
 #define CERBERUS_TYPE_REGION (cerberus_region_get_type())

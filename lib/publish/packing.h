@@ -20,7 +20,7 @@
 namespace cerberus::publish {
 
 // Version of all packed structures: raised whenever the fields of one change. An Unpacker accepts no other.
-constexpr std::uint8_t kPackedVersion = 1;
+constexpr std::uint8_t kPackedVersion = 2;
 // Longest word, bytes: its length plus one is a byte. The rest of a longer one is cut off.
 constexpr std::size_t kMostWord = 254;
 // Room that is enough for every structure, bytes.

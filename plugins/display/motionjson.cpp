@@ -16,7 +16,7 @@
  * |[
  * {"pts":1966666666,"frame":59,"width":320,"height":240,"threshold":14,"camera":[1,0,-3.25,0,1,0,0,0,1],
  *  "confidence":0.871,"objects":[{"id":4,"type":"motion","kind":"person-like","state":"seen","x":101.5,"y":60,"w":22,"h":58.5,"vx":-31.2,
- *  "vy":0.4,"confidence":0.93,"bearing":-12.25,"distance":null}]}
+ *  "vy":0.4,"confidence":0.93,"bearing":-12.25,"distance":null,"witnesses":["motion"]}]}
  * ]|
  *
  * - `pts`: nanoseconds, of the buffer; null where it has none. `frame`: counts input buffers from 0 since start.
@@ -26,11 +26,12 @@
  * - `camera`: where the picture went from the previous frame to this one, a homography in row-major order, in
  *   pixels of this frame; `confidence`: 0 to 1. Both are null where no element upstream measured it.
  * - `objects`: null where no detector ran upstream, [] where one found nothing. `id` is the track's identity, null for a region without a tracker; `type` is `motion`
- *   (`person` where `personverify` confirmed it); `kind` is `person-like`, `group`, `part` or `thing`, by
+ *   (`person` where a person detector has shown it); `kind` is `person-like`, `group`, `part` or `thing`, by
  *   its size and the people of the scene; `state` is `seen`, `coasted` or `stopped`; `x`, `y`, `w`, `h`:
  *   pixels of the frame; `vx`, `vy`: pixels a second, camera motion taken out (of a stream without time stamps and
  *   frame rate: at 25 frames a second); `bearing`: degrees from the camera's axis, whatever the head's pose, positive to
- *   the right; `distance`: metres.
+ *   the right; `distance`: metres; `witnesses`: `motion` where a track of what moves has its place, or has had it within
+ *   the last second, `person` where a person detector has shown it.
  *
  * Keys that are there only where their values are known, after `frame`:
  * - `utc`: wall-clock time of the frame, ISO 8601; `utc-source`: `reference-timestamp` (the buffer carries one, as of

@@ -75,6 +75,7 @@ std::vector<CerberusRegion>& EvidenceRegions::update(const EvidenceInput& frame,
     region.x = found.box.x, region.y = found.box.y;
     region.width = found.box.width, region.height = found.box.height;
     region.person = found.person;
+    region.motion = found.moves || found.motion >= 0;
     if (found.person) region.confidence = found.confidence;
     region.kind =
         found.person ? CERBERUS_REGION_KIND_PERSON_LIKE : static_cast<CerberusRegionKind>(found.kind);

@@ -35,7 +35,11 @@ void write_object(text::JsonLine& line, const CerberusRegion& region) {
   line.key("vx").fixed(region.vx, kPixelDecimals).key("vy").fixed(region.vy, kPixelDecimals);
   line.key("confidence").fixed(region.confidence, kShareDecimals);
   line.key("bearing").fixed(region.bearing, kPixelDecimals);
-  line.key("distance").fixed(region.distance, kPixelDecimals).close('}');
+  line.key("distance").fixed(region.distance, kPixelDecimals);
+  line.key("witnesses").open('[');
+  if (region.motion) line.string("motion");
+  if (region.person) line.string("person");
+  line.close(']').close('}');
 }
 
 // Writes the fields of a system with a head and sensors.

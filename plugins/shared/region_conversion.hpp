@@ -38,6 +38,7 @@ inline CerberusRegion tracked(const vision::Track& track) {
   out.vy = track.vy;
   out.age = clock_time(track.age);
   out.state = static_cast<CerberusRegionState>(track.state);
+  out.motion = track.motion, out.person = track.person;
   out.bearing = sensing::degrees(track.bearing);
   out.distance = track.distance;
   return out;
@@ -59,6 +60,7 @@ inline vision::Track track_of(const CerberusRegion& region) {
   track.age = static_cast<double>(region.age) / GST_SECOND;
   track.confidence = region.confidence;
   track.state = static_cast<vision::TrackState>(region.state);
+  track.motion = region.motion, track.person = region.person;
   track.kind = static_cast<vision::RegionKind>(region.kind);
   track.bearing = sensing::radians(region.bearing);
   track.distance = region.distance;

@@ -41,6 +41,7 @@ inline CerberusRegion walker() {
   region.age = 3 * GST_SECOND;
   region.state = CERBERUS_REGION_COASTED;
   region.bearing = -12.5;
+  region.motion = FALSE;
   return region;
 }
 
@@ -48,6 +49,7 @@ inline void assert_same(const CerberusRegion& a, const CerberusRegion& b) {
   fail_unless_equals_int(a.id, b.id);
   fail_unless_equals_int(a.tracked, b.tracked);
   fail_unless_equals_int(a.person, b.person);
+  fail_unless_equals_int(a.motion, b.motion);
   fail_unless_equals_int(a.state, b.state);
   fail_unless_equals_uint64(a.age, b.age);
   const double pairs[][2] = {{a.x, b.x},

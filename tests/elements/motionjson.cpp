@@ -73,7 +73,7 @@ GstBuffer* full_frame() {
   add(buffer, second);
   CerberusRegion third = region(6, 30, 30, 5, 5);
   third.state = CERBERUS_REGION_COASTED;
-  third.tracked = FALSE;
+  third.tracked = third.motion = FALSE;
   add(buffer, third);
   return buffer;
 }
@@ -82,11 +82,11 @@ const char* const kFullLine =
     R"({"pts":120000000,"frame":0,"width":64,"height":48,"threshold":14,)"
     R"("camera":[0.999998745,-0.25,-3.5,0,1,0,1.25e-07,0,1],"confidence":0.871,"objects":[)"
     R"({"id":4,"type":"motion","kind":"person-like","state":"seen","x":10,"y":20,"w":12,"h":18,"vx":-31.2,"vy":0.4,"confidence":0.931,)"
-    R"("bearing":-12.25,"distance":4.5},)"
+    R"("bearing":-12.25,"distance":4.5,"witnesses":["motion"]},)"
     R"({"id":5,"type":"person","kind":"group","state":"stopped","x":0,"y":0,"w":8,"h":9,"vx":null,"vy":null,"confidence":1,)"
-    R"("bearing":null,"distance":null},)"
+    R"("bearing":null,"distance":null,"witnesses":["motion","person"]},)"
     R"({"id":null,"type":"motion","kind":"person-like","state":"coasted","x":30,"y":30,"w":5,"h":5,"vx":0,"vy":0,"confidence":0.5,)"
-    R"("bearing":null,"distance":null}]})"
+    R"("bearing":null,"distance":null,"witnesses":[]}]})"
     "\n";
 
 std::string empty_line(const char* pts, int number, int width = 64, int height = 48) {

@@ -39,6 +39,8 @@ struct Track {
   TrackState state = TrackState::seen;
   // Of the region that it was last seen in alone; a group's where that lasts (TrackParameters::shared_group).
   RegionKind kind = RegionKind::person_like;
+  // Which witnesses it has: motion, and a person detector (EvidenceTracker).
+  bool motion = true, person = false;
   // Of the middle of the box from the camera's axis, radians, and along the floor, metres. NaN: not known; filled by
   // Detector.
   double bearing = std::numeric_limits<double>::quiet_NaN();
