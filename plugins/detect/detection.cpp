@@ -10,6 +10,8 @@
 #include "shared/clock_times.hpp"
 #include "shared/region_conversion.hpp"
 #include "shared/video.hpp"
+#include "vision/persons/body_boxes.h"
+#include "vision/persons/detector_use.h"
 
 GST_DEBUG_CATEGORY_STATIC(detection_debug);
 #define GST_CAT_DEFAULT detection_debug
@@ -152,7 +154,7 @@ Analyser::Outcome Detection::analyse(Frame& frame) {
 
   bool keep = true;
   frame.everything = (frame.wanted & kRecordForReaders) != 0;
-  read_looks(frame);
+  read_looks(frame, step_of(frame));
   if (has(Stage::regions)) {
     const int how = state.settings.keep_planes;
     frame.everything = how == KEEP_PLANES_ALWAYS || (how == KEEP_PLANES_AUTO && frame.everything);
@@ -211,7 +213,7 @@ void Detection::repeat(Frame& frame) {
   if (has(Stage::tracks)) {
     publish_calm(frame.buffer);
     for (CerberusRegion& region : state.moving) region.age += clock_time(step);
-    read_looks(frame);
+    read_looks(frame, step);
   }
   publish(frame, {}, step);
 }
@@ -232,12 +234,13 @@ void Detection::complain_of_scene(double seconds) {
   if (!state.detector.withholds_tracks() || state.withheld > kLong) return;
   state.withheld += seconds;
   if (state.withheld <= kLong) return;
-  CERBERUS_ELEMENT_INFO(base, STREAM, FAILED,
-                        ("Much of the scene moves in ways that a turn of the camera does not explain: the "
-                         "picture blurs or shakes, or "
-                         "the camera drives past what is near. Only what clearly moves by itself is found "
-                         "there. To find people there, put `personverify` in front or behind."),
-                        ("tracks without more motion inside than around them are left out"));
+  CERBERUS_ELEMENT_INFO(
+      base, STREAM, FAILED,
+      ("Much of the scene moves in ways that a turn of the camera does not explain: the "
+       "picture blurs or shakes, or "
+       "the camera drives past what is near. Only what clearly moves by itself is found "
+       "there. To find people there, put `personverify`, or another person detector, in front."),
+      ("tracks without more motion inside than around them are left out"));
 }
 
 void Detection::watch(const Frame& frame, double step) {
@@ -326,22 +329,47 @@ void Detection::publish_regions(GstBuffer* buffer, const vision::Analysis& recor
 
 // The tracks of what moves are for an element downstream that judges them, or are judged here, where a person detector
 // looks on.
-void Detection::read_looks(Frame& frame) {
+void Detection::read_looks(Frame& frame, double step) {
+  State& state = *state_;
+  const bool judged_downstream = (frame.wanted & kAllTracks) != 0;
+  frame.persons = judged_downstream;
+  state.judges = false;
+  if (judged_downstream || !has(Stage::tracks)) return;
+  if (const PersonLooks* looks = person_looks_of(frame.buffer)) {
+    state.looks = *looks;
+    state.has_looks = true;
+  } else {
+    read_boxes(frame, step);
+  }
+  state.judges = frame.persons = state.has_looks;
+}
+
+// Boxes of persons that other elements have found are the result of a look at this frame.
+void Detection::read_boxes(const Frame& frame, double step) {
   State& state = *state_;
   state.looks.begins = state.looks.ends = 0;
-  const PersonLooks* looks = person_looks_of(frame.buffer);
-  if (looks) state.looks = *looks;
-  state.has_looks = state.has_looks || looks;
-  const bool judged_downstream = (frame.wanted & kAllTracks) != 0;
-  state.judges = has(Stage::tracks) && state.has_looks && !judged_downstream;
-  frame.persons = state.judges || judged_downstream;
+  state.looks.bodies.clear();
+  read_foreign_boxes(frame.buffer, frame.size, state.boxes);
+  for (const ForeignBox& found : state.boxes)
+    if (found.person)
+      state.looks.bodies.push_back(
+          {found.box,
+           vision::evidence_score(found.confidence, vision::kNetworkUse.threshold, vision::kNetworkUse)});
+  state.looks.of_this_frame = state.look_times.is_look(step, !state.looks.bodies.empty());
+  state.has_looks = state.has_looks || state.looks.of_this_frame;
+  vision::hits_to_bodies(state.looks.bodies, {});
+}
+
+// Seconds since the last frame, repeated or not; 0: it follows none.
+double Detection::step_of(const Frame& frame) const {
+  return frame.seconds > 0 ? std::max(frame.seconds - state_->repeated, 1e-9) : 0;
 }
 
 void Detection::publish_tracks(const Frame& frame, const vision::Analysis& record) {
   State& state = *state_;
   state.moving.clear();
   for (const vision::Track& track : *record.tracks) state.moving.push_back(tracked(track));
-  const double step = frame.seconds > 0 ? std::max(frame.seconds - state.repeated, 1e-9) : 0;
+  const double step = step_of(frame);
   if (record.luma) return publish(frame, source_of((*record.luma)->view()), step);
   const VideoFrame mapped(*frame.info, frame.buffer, GST_MAP_READ);
   if (frame.fresh) state.stretch.reset();

@@ -18,9 +18,11 @@
 #include "settings_conflict.hpp"
 #include "shared/camera_path.hpp"
 #include "shared/evidence_regions.hpp"
+#include "shared/foreign_boxes.hpp"
 #include "shared/record.hpp"
 #include "shared/stamps.hpp"
 #include "vision/detector.h"
+#include "vision/persons/look_times.h"
 
 namespace cerberus::plugin {
 
@@ -58,6 +60,8 @@ class Detection : public Analyser {
     std::vector<CerberusRegion> moving, published;  // of what moves; attached
     EvidenceRegions evidence;                       // of both witnesses
     PersonLooks looks;                              // of a person detector upstream: of the last frame
+    std::vector<ForeignBox> boxes;                  // that other elements have found, of the last frame
+    vision::LookTimes look_times;                   // of those of persons
     bool has_looks = false, judges = false;         // there has been one; what moves is judged by them
     vision::LumaStretch stretch;                    // of pictures that no stage has reduced
     CerberusCameraMotion motion{};                  // of the last picture
@@ -84,7 +88,9 @@ class Detection : public Analyser {
   void publish_threshold(GstBuffer* buffer, const vision::Analysis& record);
   void publish_regions(GstBuffer* buffer, const vision::Analysis& record);
   void publish_tracks(const Frame& frame, const vision::Analysis& record);
-  void read_looks(Frame& frame);
+  void read_looks(Frame& frame, double step);
+  void read_boxes(const Frame& frame, double step);
+  double step_of(const Frame& frame) const;
   void publish(const Frame& frame, const vision::LumaSource& luma, double step);
   void attach_published(GstBuffer* buffer);
   void read_regions(GstBuffer* buffer);

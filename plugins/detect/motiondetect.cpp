@@ -9,7 +9,7 @@
  *
  * A camera that is carried, shakes or drives past near things sees motion everywhere. There only what clearly moves by itself
  * is published, people who stand or move little are missed, and an info message says so, once a stream: put
- * `personverify` in front or behind, which knows people by their shape. See `motiontrack`.
+ * `personverify` in front or behind, which knows people by their shape, or another person detector in front. See `motiontrack`.
  *
  * Every property that the application sets wins over `preset`, whichever was set first. Settings with which nothing can
  * ever be found are warned of by the stage that they are for.

@@ -22,6 +22,13 @@
  * and judged here by both witnesses, what moves and what the detector sees, as that element says it: persons have its
  * identities and types, in the messages, too.
  *
+ * Boxes of persons that any other element upstream has found are such a witness, too: #GstVideoRegionOfInterestMeta, and from
+ * GStreamer 1.24 on object detections of #GstAnalyticsRelationMeta, whose label is person, pedestrian, human, people, body,
+ * man, woman or child, in any case. They are looks at the frame that they are on. The detector may look at few of the frames:
+ * what its looks do not show any more ends, counted by the shortest of its last intervals. A confidence is that of a network,
+ * .55 begins a track; a box without one (the number `confidence` of a param `detection`) is sure. Other labels are ignored.
+ * The boxes stay on the frame as they are. They do not count where `personverify` looks, in front or behind.
+ *
  * Posts `cerberus-motion` element messages: `state=started` with the objects when the first appears, `state=ended` when
  * none was there for `hold-time`, at the end of the stream and when the element stops, with the objects of the last
  * frame that had any. Where the source is live and frames stop coming, it is posted `hold-time` after the last one, by

@@ -32,8 +32,11 @@ void EvidenceRegions::reset() {
 // A result of another look than the one that is known to be in progress is of no use: the frame that was looked at was
 // dropped on its way, or is of another scene.
 std::optional<vision::EvidenceLook> EvidenceRegions::result(const PersonLooks& looks) {
-  if (looks.ends == 0 || looks.ends != look_) return std::nullopt;
-  vision::EvidenceLook look{looks.bodies};
+  if (looks.of_this_frame)
+    begun_ = time_;
+  else if (looks.ends == 0 || looks.ends != look_)
+    return std::nullopt;
+  vision::EvidenceLook look{.bodies = looks.bodies, .of_this_frame = looks.of_this_frame};
   if (begun_before_) look.seconds = static_cast<double>(begun_ - *begun_before_) / GST_SECOND;
   begun_before_ = begun_;
   look_ = 0;

@@ -11,10 +11,9 @@ namespace cerberus::plugin {
 namespace {
 
 // Measured: quartiles of HOG's score 1.7 to 3.1 of a person before the camera, .3 to 1.8 of smaller ones, -.1 to .6 of what is
-// none; Daimler's is 1 higher. The gain of probabilities makes .3 no evidence: the trial's.
-constexpr DetectorUse kHog{.threshold = 0.5, .least = -0.2};
-constexpr DetectorUse kDaimler{.threshold = 1.5, .least = 0.8};
-constexpr DetectorUse kModel{.threshold = 0.55, .gain = 2, .least = 0.2};
+// none; Daimler's is 1 higher.
+constexpr vision::DetectorUse kHog{.threshold = 0.5, .least = -0.2};
+constexpr vision::DetectorUse kDaimler{.threshold = 1.5, .least = 0.8};
 
 HogWeights weights_of(DetectorKind kind) {
   return kind == DetectorKind::hog ? HogWeights::inria : HogWeights::daimler;
@@ -22,8 +21,8 @@ HogWeights weights_of(DetectorKind kind) {
 
 }  // namespace
 
-const DetectorUse& use_of(DetectorKind kind) {
-  return kind == DetectorKind::model ? kModel : kind == DetectorKind::hog ? kHog : kDaimler;
+const vision::DetectorUse& use_of(DetectorKind kind) {
+  return kind == DetectorKind::model ? vision::kNetworkUse : kind == DetectorKind::hog ? kHog : kDaimler;
 }
 
 std::unique_ptr<vision::WholeFrameDetector> make_whole_frame_detector(DetectorKind kind, ModelSettings model,

@@ -8,6 +8,7 @@
 
 #include "model_detector.hpp"
 #include "vision/persons/body_boxes.h"
+#include "vision/persons/detector_use.h"
 #include "vision/persons/person_detector.h"
 #include "vision/persons/whole_frame_detector.h"
 
@@ -15,16 +16,7 @@ namespace cerberus::plugin {
 
 enum class DetectorKind { daimler, hog, model };
 
-struct DetectorUse {
-  double threshold = 0;  // score from which on a body begins a track, by default
-  double gain = 1;       // of the score, to that of vision::EvidenceLook
-  double least = 0;      // score down to which boxes of a whole frame are of use to a tracker
-};
-const DetectorUse& use_of(DetectorKind kind);
-// A detector's score as vision::EvidenceLook has it: .5 at the threshold.
-inline double evidence_score(double score, double threshold, const DetectorUse& use) {
-  return 0.5 + use.gain * (score - threshold);
-}
+const vision::DetectorUse& use_of(DetectorKind kind);
 
 // Lines of a whole frame that a detector with a window scans. Chosen: 45 to 70 ms a look; 720 lines take a core at 4 looks a
 // second.

@@ -100,6 +100,7 @@
 #include "shared/clock_times.hpp"
 #include "shared/complaint.hpp"
 #include "shared/evidence_regions.hpp"
+#include "shared/foreign_boxes.hpp"
 #include "shared/person_looks.hpp"
 #include "shared/properties.hpp"
 #include "shared/record.hpp"
@@ -216,9 +217,10 @@ struct State {  // streaming thread only
   vision::FrameHistory history{vision::FrameHistory::Parameters{.gap_seconds = kLongestGap}};
   GstClockTime last = GST_CLOCK_TIME_NONE, next_look = GST_CLOCK_TIME_NONE;
   cerberus::plugin::EvidenceRegions evidence;
-  std::vector<CerberusRegion> before;  // regions of the frame
-  bool foreign = false;                // they are other elements' regions of interest
-  cerberus::plugin::DetectorUse use;   // of the detector in the worker
+  std::vector<CerberusRegion> before;               // regions of the frame
+  bool foreign = false;                             // they are other elements'
+  std::vector<cerberus::plugin::ForeignBox> boxes;  // likewise
+  vision::DetectorUse use;                          // of the detector in the worker
   double threshold = 0;
   cerberus::plugin::Complaint caps, frame;
 };
@@ -336,15 +338,15 @@ gboolean cerberus_person_verify_sink_event(GstBaseTransform* transform, GstEvent
   return GST_BASE_TRANSFORM_CLASS(cerberus_person_verify_parent_class())->sink_event(transform, event);
 }
 
-// Regions of interest of other elements.
+// What other elements have found.
 void read_foreign(State& state, GstBuffer* buffer) {
-  gpointer iterator = nullptr;
-  while (GstMeta* meta = gst_buffer_iterate_meta_filtered(buffer, &iterator,
-                                                          GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE)) {
-    const auto* roi = reinterpret_cast<const GstVideoRegionOfInterestMeta*>(meta);
+  cerberus::plugin::read_foreign_boxes(
+      buffer, {GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)}, state.boxes);
+  for (const cerberus::plugin::ForeignBox& found : state.boxes) {
     CerberusRegion region;
     cerberus_region_init(&region);
-    region.x = roi->x, region.y = roi->y, region.width = roi->w, region.height = roi->h;
+    region.x = found.box.x, region.y = found.box.y;
+    region.width = found.box.width, region.height = found.box.height;
     state.before.push_back(region);
   }
 }
@@ -363,6 +365,8 @@ void attach(State& state, GstBuffer* buffer, std::vector<CerberusRegion>& found,
     while (GstMeta* meta = gst_buffer_get_meta(buffer, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE))
       if (!gst_buffer_remove_meta(buffer, meta)) break;
   if (state.foreign && found.empty()) return;
+  if (state.foreign)
+    for (CerberusRegion& region : found) region.motion = FALSE;
   g_autoptr(GPtrArray) array = cerberus::plugin::array_of(found);
   cerberus_buffer_set_regions(buffer, array);
 }
@@ -380,8 +384,7 @@ std::optional<std::string> end_look(State& state, GstClockTime now) {
   for (const vision::PersonDetection& body : found) {
     GST_LOG("%" GST_TIME_FORMAT ": %.0f,%.0f %.0fx%.0f, score %.2f", GST_TIME_ARGS(looked), body.box.x,
             body.box.y, body.box.width, body.box.height, body.score);
-    state.looks.bodies.push_back(
-        {body.box, cerberus::plugin::evidence_score(body.score, state.threshold, state.use)});
+    state.looks.bodies.push_back({body.box, vision::evidence_score(body.score, state.threshold, state.use)});
   }
   return std::nullopt;
 }

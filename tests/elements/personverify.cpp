@@ -116,7 +116,26 @@ GST_START_TEST(a_track_that_is_a_person_is_published_as_one_with_its_identity) {
     fail_unless_equals_int(found[0].id, 7);
     fail_unless(found[0].confidence > 0.5 && found[0].confidence <= 1, "%s: %f", detector,
                 found[0].confidence);
+    fail_unless(found[0].motion);
     expect_place(found[0], 149);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(who_is_seen_by_the_detector_alone_has_no_other_witness) {
+  Verifier verifier("");
+  for (int n = 0; n < 24; ++n) {
+    GstBuffer* in = scene(n, {100.0 + 3 * n});
+    g_autoptr(GPtrArray) none = g_ptr_array_new();
+    cerberus_buffer_set_regions(in, none);
+    GstBuffer* out = verifier.through(in);
+    g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(out);
+    if (n > 12) {
+      fail_unless_equals_int(regions->len, 1);
+      const auto* each = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, 0));
+      fail_unless(each->person && !each->motion);
+    }
+    gst_buffer_unref(out);
   }
 }
 GST_END_TEST
@@ -128,7 +147,7 @@ GST_START_TEST(a_track_that_is_no_person_stays_unless_persons_are_required) {
     CerberusRegion thing = region(3, 20, 100, 60, 40);
     const auto found = regions_after(verifier, 10, {}, true, {thing});
     fail_unless_equals_int(found.size(), required ? 0 : 1);
-    for (const auto& each : found) fail_unless(!each.person && each.id == 3);
+    for (const auto& each : found) fail_unless(!each.person && each.motion && each.id == 3);
   }
 }
 GST_END_TEST
@@ -229,7 +248,7 @@ GST_START_TEST(regions_of_interest_of_other_elements_are_verified_too) {
     g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(out);
     fail_unless_equals_int(regions->len, 1);
     const auto* each = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, 0));
-    fail_unless(each->person);
+    fail_unless(each->person && !each->motion);
     expect_place(*each, 200);
     int others = 0;
     gpointer state = nullptr;
@@ -462,6 +481,7 @@ Suite* personverify_suite() {
   tcase_set_timeout(tests, 120);
   suite_add_tcase(suite, tests);
   tcase_add_test(tests, a_track_that_is_a_person_is_published_as_one_with_its_identity);
+  tcase_add_test(tests, who_is_seen_by_the_detector_alone_has_no_other_witness);
   tcase_add_test(tests, a_track_that_is_no_person_stays_unless_persons_are_required);
   tcase_add_test(tests, a_track_that_holds_two_people_becomes_two_persons);
   tcase_add_test(tests, a_result_counts_40_ms_of_running_time_after_its_frame);

@@ -48,7 +48,7 @@ class Scene {
   std::span<const EvidenceResult> frame(const std::vector<double>& bodies,
                                         const std::vector<Track>& motion = {},
                                         const std::optional<std::vector<PersonDetection>>& late = {},
-                                        double period = kLook * kSeconds) {
+                                        double period = kLook * kSeconds, bool at_once = false) {
     wall_ += pan / 2;
     paint(picture_, all_of(kSmall), wall_, 0, 1);
     for (const double x : bodies) {
@@ -63,7 +63,7 @@ class Scene {
     f.motion = Transform::translation(pan, 0);
     f.still = still, f.calm = calm;
     std::optional<EvidenceLook> look;
-    if (late) look = EvidenceLook{*late, period};
+    if (late) look = EvidenceLook{*late, period, at_once};
     return tracker.update(f, motion, look);
   }
   // Looks at the last frame; the result is there in the next one.
@@ -278,6 +278,21 @@ START_TEST(a_look_counts_however_late_it_is) {
 }
 END_TEST
 
+// As of boxes that ride on the frame itself.
+START_TEST(a_look_at_the_very_frame_shows_where_the_body_is_now) {
+  Scene scene;
+  scene.calm = 0.4, scene.still = false;
+  for (int n = 0; n < 13; ++n) {
+    std::optional<std::vector<PersonDetection>> now;
+    if (n % kLook == 0) now = {{body_at(200 + 4 * n), kSure}};
+    const auto found = scene.frame({200.0 + 4 * n}, {}, now, kLook * kSeconds, true);
+    if (n < kLook) continue;
+    ck_assert_int_eq(found.size(), 1);
+    ck_assert(found[0].person && near(found[0].box, body_at(200 + 4 * n), 6));
+  }
+}
+END_TEST
+
 START_TEST(an_identity_that_motion_gives_back_is_the_persons_again) {
   Scene scene;
   const auto frames = walk(scene, 24, 4, kSure);
@@ -347,6 +362,7 @@ int main() {
        a_group_is_replaced_by_the_people_in_it,
        what_never_moves_before_a_still_camera_is_nobody_however_sure_a_detector_is,
        a_doubtful_look_makes_no_person_of_what_moves, who_is_shown_once_a_second_is_published_all_the_time,
-       a_look_counts_however_late_it_is, an_identity_that_motion_gives_back_is_the_persons_again,
+       a_look_counts_however_late_it_is, a_look_at_the_very_frame_shows_where_the_body_is_now,
+       an_identity_that_motion_gives_back_is_the_persons_again,
        after_a_reset_nothing_is_known_and_no_identity_is_given_twice, the_steady_state_allocates_nothing});
 }

@@ -360,6 +360,7 @@ std::span<const EvidenceResult> EvidenceTracker::update(const EvidenceFrame& fra
   for (EvidenceTrack& t : tracks_)
     t.follow(number_ > 1 ? &pyramids_[1 - present_] : nullptr, pyramids_[present_], motion_, frame.seconds,
              p_);
+  if (look && look->of_this_frame) begin_look();
   if (look && look_number_ > 0) take_look(*look);
   if (frame.calm >= p_.calm)
     take_motion(motion);

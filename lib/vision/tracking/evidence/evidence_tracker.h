@@ -34,7 +34,8 @@ struct EvidenceFrame {
 // person whom no track has; 1 is a person beyond doubt, 0 and less is most likely none.
 struct EvidenceLook {
   std::span<const PersonDetection> bodies;
-  double seconds = 0.25;  // since the look before
+  double seconds = 0.25;       // since the look before
+  bool of_this_frame = false;  // it has begun at the frame that it is passed with
 };
 
 struct EvidenceResult {

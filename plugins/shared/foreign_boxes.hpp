@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Boxes of objects that other elements than ours have found on a frame: regions of interest, and the object detections of
+// GstAnalytics (1.24).
+#pragma once
+
+#include <gst/gst.h>
+
+#include <vector>
+
+#include "vision/geometry/box.h"
+#include "vision/image/image.h"
+
+namespace cerberus::plugin {
+
+struct ForeignBox {
+  vision::Box box;        // pixels, inside the frame
+  double confidence = 1;  // 0 to 1; 1 where the element gives none
+  bool person = false;    // so its label says
+};
+
+// Replaces `boxes`. Boxes outside the frame and those of less than a pixel are left out, those of a negative confidence or one
+// that is no number, too. An object that is there in both forms comes twice.
+void read_foreign_boxes(GstBuffer* buffer, vision::Size frame, std::vector<ForeignBox>& boxes);
+
+// Whether an object of this label is a person: "person", "pedestrian", "human", "people", "body", "man", "woman", "child",
+// in any case.
+bool is_person_label(const char* label);
+
+}  // namespace cerberus::plugin

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Boxes that another element has found are the second witness of motiondetect: a fake detector attaches the true ones at 2 Hz, as
+// regions of interest or as detections of GstAnalytics, while the camera turns.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "scene.h"
+
+#include "cerberus/private/compat.hpp"
+#if CERBERUS_ANALYTICS
+#include <gst/analytics/analytics.h>
+#endif
+
+namespace {
+
+using scene::Regions;
+
+constexpr int kLook = 12;  // frames from look to look: about 2 a second
+constexpr int kGone = 60;  // frame at which the figure is gone
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // no confidence is given
+
+void add_region_of_interest(GstBuffer* buffer, const char* label, double x, double y, double width,
+                            double height, double confidence) {
+  const auto pixels = [](double n) { return static_cast<guint>(static_cast<gint64>(n)); };
+  GstVideoRegionOfInterestMeta* roi = gst_buffer_add_video_region_of_interest_meta(
+      buffer, label, pixels(x), pixels(y), pixels(width), pixels(height));
+  if (std::isnan(confidence)) return;
+  gst_video_region_of_interest_meta_add_param(
+      roi, gst_structure_new("detection", "confidence", G_TYPE_DOUBLE, confidence, nullptr));
+}
+
+#if CERBERUS_ANALYTICS
+void add_detection(GstBuffer* buffer, const char* label, double x, double y, double width, double height,
+                   double confidence) {
+  GstAnalyticsRelationMeta* meta = gst_buffer_get_analytics_relation_meta(buffer);
+  if (!meta) meta = gst_buffer_add_analytics_relation_meta(buffer);
+  GstAnalyticsODMtd detection;
+  fail_unless(gst_analytics_relation_meta_add_od_mtd(
+      meta, g_quark_from_string(label), static_cast<gint>(x), static_cast<gint>(y), static_cast<gint>(width),
+      static_cast<gint>(height), static_cast<gfloat>(std::isnan(confidence) ? 1 : confidence), &detection));
+}
+#endif
+
+using Form = void (*)(GstBuffer*, const char*, double, double, double, double, double);
+const std::vector<Form> kForms = {
+    add_region_of_interest,
+#if CERBERUS_ANALYTICS
+    add_detection,
+    // Both, as DL Streamer does.
+    [](GstBuffer* buffer, const char* label, double x, double y, double width, double height,
+       double confidence) {
+      add_region_of_interest(buffer, label, x, y, width, height, confidence);
+      add_detection(buffer, label, x, y, width, height, confidence);
+    },
+#endif
+};
+
+// The camera follows somebody who walks to the right, and loses sight of the figure at kGone.
+scene::World walk() {
+  scene::World world;
+  world.start = 60, world.speed = 4, world.pan = 3;
+  return world;
+}
+
+GstBuffer* frame_of(const scene::World& world, int number) {
+  scene::World now = world;
+  now.figure = number < kGone;
+  return scene::grey_buffer(now, number);
+}
+
+void expect_figure(const CerberusRegion& r, const scene::World& world, int frame, double scale = 1) {
+  const double left = world.figure_left(frame) * scale, top = world.figure_top() * scale;
+  const double right = left + scene::kFigureWidth * scale, bottom = top + scene::kFigureHeight * scale;
+  const double across = std::min(right, r.x + r.width) - std::max(left, r.x);
+  const double down = std::min(bottom, r.y + r.height) - std::max(top, r.y);
+  const double both = std::max(across, 0.0) * std::max(down, 0.0);
+  const double shared = both / (r.width * r.height + (right - left) * (bottom - top) - both);
+  fail_unless(shared > .5, "frame %d: %.0f,%.0f %.0fx%.0f shares %.2f", frame, r.x, r.y, r.width, r.height,
+              shared);
+}
+
+int count_foreign(GstBuffer* buffer) {
+  int count = 0;
+  gpointer state = nullptr;
+  while (GstMeta* meta =
+             gst_buffer_iterate_meta_filtered(buffer, &state, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE))
+    count += !gst_video_region_of_interest_meta_get_param(
+        reinterpret_cast<GstVideoRegionOfInterestMeta*>(meta), CERBERUS_REGION_STRUCTURE);
+  return count;
+}
+
+}  // namespace
+
+// The regions at every frame: between looks the figure has its box and its identity, and none remains once it has left.
+GST_START_TEST(a_detector_of_2_hz_gives_persons_who_are_followed_between_its_looks_and_end) {
+  const scene::World world = walk();
+  for (const Form attach : kForms)
+    for (const double confidence : {.9, kNone}) {
+      scene::Line line("motiondetect");
+      std::set<guint> identities;
+      int frames = 0, last = 0;
+      for (int n = 0; n < kGone + 75; ++n) {
+        GstBuffer* in = frame_of(world, n);
+        const bool looked = n % kLook == 0 && n < kGone;
+        if (looked)
+          attach(in, "Person", world.figure_left(n), world.figure_top(), scene::kFigureWidth,
+                 scene::kFigureHeight, confidence);
+        GstBuffer* out = line.through(in);
+        const Regions regions(out);
+        for (guint i = 0; i < regions.size(); ++i) {
+          if (!regions[i].person) continue;
+          identities.insert(regions[i].id);
+          last = n;
+          if (n >= kGone) continue;
+          ++frames;
+          expect_figure(regions[i], world, n);
+        }
+        if (attach == add_region_of_interest) fail_unless_equals_int(count_foreign(out), looked);
+        gst_buffer_unref(out);
+      }
+      fail_unless_equals_int(identities.size(), 1);
+      // From the second look on at the latest.
+      fail_unless(frames >= kGone - kLook - 1, "%d", frames);
+      fail_unless(last < kGone + 50, "still there at frame %d", last);
+    }
+}
+GST_END_TEST
+
+GST_START_TEST(boxes_follow_a_picture_that_is_converted_and_scaled_on_its_way) {
+  const scene::World world = walk();
+  scene::Line line(
+      "videoconvert ! video/x-raw,format=RGB ! videoscale ! video/x-raw,width=240,height=180 ! motiondetect "
+      "! "
+      "identity");
+  int frames = 0;
+  for (int n = 0; n < kGone; ++n) {
+    GstBuffer* in = frame_of(world, n);
+    if (n % kLook == 0)
+      add_region_of_interest(in, "person", world.figure_left(n), world.figure_top(), scene::kFigureWidth,
+                             scene::kFigureHeight, .9);
+    GstBuffer* out = line.through(in);
+    const Regions regions(out);
+    for (guint i = 0; i < regions.size(); ++i)
+      if (regions[i].person) expect_figure(regions[i], world, n, .75), ++frames;
+    gst_buffer_unref(out);
+  }
+  fail_unless(frames >= kGone - kLook - 1, "%d", frames);
+}
+GST_END_TEST
+
+GST_START_TEST(each_object_is_one_object_of_a_line) {
+  const scene::World world = walk();
+  scene::Line line("motiondetect ! motionjson");
+  for (int n = 0; n < kGone; ++n) {
+    GstBuffer* in = frame_of(world, n);
+    add_region_of_interest(in, "person", world.figure_left(n), world.figure_top(), scene::kFigureWidth,
+                           scene::kFigureHeight, .9);
+    GstBuffer* out = line.through(in);
+    GstMapInfo map;
+    fail_unless(gst_buffer_map(out, &map, GST_MAP_READ));
+    const std::string text(reinterpret_cast<const char*>(map.data), map.size);
+    gst_buffer_unmap(out, &map);
+    gst_buffer_unref(out);
+    const auto first = text.find("\"id\"");
+    if (n > kGone - 20)
+      fail_unless(first != std::string::npos && text.find("\"id\"", first + 1) == std::string::npos);
+  }
+}
+GST_END_TEST
+
+// What is no person changes nothing, nor do boxes that cannot be any, nor regions of ours.
+GST_START_TEST(other_labels_bad_boxes_and_our_own_regions_are_no_witness) {
+  constexpr double kHuge = 4e9;
+  const std::vector<std::function<void(GstBuffer*, Form)>> kinds = {
+      [](GstBuffer* in, Form attach) { attach(in, "car", 200, 100, 60, 40, .9); },
+      [](GstBuffer* in, Form attach) { attach(in, "", 200, 100, 60, 40, .9); },
+      [](GstBuffer* in, Form attach) { attach(in, "personal bag", 200, 100, 60, 40, .9); },
+      [](GstBuffer* in, Form attach) { attach(in, "person", 200, 100, 0, 40, .9); },
+      [](GstBuffer* in, Form attach) { attach(in, "person", 200, 100, 40, 0, .9); },
+      [](GstBuffer* in, Form attach) { attach(in, "person", 200, 100, -40, -80, .9); },
+      [](GstBuffer* in, Form attach) { attach(in, "person", 2000, 100, 40, 80, .9); },
+      [](GstBuffer* in, Form attach) { attach(in, "person", -200, 100, 40, 80, .9); },
+      [](GstBuffer* in, Form) { add_region_of_interest(in, "person", kHuge, kHuge, kHuge, kHuge, .9); },
+      [](GstBuffer* in, Form attach) { attach(in, "person", 200, 100, 40, 80, -1); },
+      [](GstBuffer* in, Form) {
+        GstVideoRegionOfInterestMeta* roi =
+            gst_buffer_add_video_region_of_interest_meta(in, "person", 200, 100, 40, 80);
+        gst_video_region_of_interest_meta_add_param(
+            roi, gst_structure_new("detection", "confidence", G_TYPE_DOUBLE, kNone, nullptr));
+      },
+      [](GstBuffer* in, Form) {
+        CerberusRegion region;
+        cerberus_region_init(&region);
+        region.id = 7, region.tracked = region.person = TRUE, region.confidence = .9;
+        region.x = 200, region.y = 100, region.width = 40, region.height = 80;
+        fail_unless(cerberus_buffer_add_region(in, &region));
+      },
+  };
+  const scene::World world = walk();
+  std::string alone[kGone];
+  {
+    scene::Line line("motiondetect");
+    line.run(world, 0, kGone, [&](int n, GstBuffer* out) { alone[n] = Regions(out).text(); });
+  }
+  for (const Form attach : kForms)
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+      scene::Line line("motiondetect");
+      for (int n = 0; n < kGone; ++n) {
+        GstBuffer* in = scene::grey_buffer(world, n);
+        kinds[kind](in, attach);
+        GstBuffer* out = line.through(in);
+        fail_unless(Regions(out).text() == alone[n], "kind %d, frame %d", static_cast<int>(kind), n);
+        gst_buffer_unref(out);
+      }
+    }
+}
+GST_END_TEST
+
+// A box that reaches beyond the picture counts for the part inside.
+GST_START_TEST(a_person_who_is_cut_by_the_edge_is_a_person) {
+  scene::World world;
+  world.start = 30, world.speed = -3;
+  scene::Line line("motiondetect");
+  bool person = false;
+  for (int n = 0; n < 14; ++n) {
+    GstBuffer* in = scene::grey_buffer(world, n);
+    add_region_of_interest(in, "pedestrian", world.figure_left(n), world.figure_top(), scene::kFigureWidth,
+                           scene::kFigureHeight, .9);
+    GstBuffer* out = line.through(in);
+    const Regions regions(out);
+    for (guint i = 0; i < regions.size(); ++i) {
+      person = person || regions[i].person;
+      fail_unless(regions[i].x >= 0 && regions[i].y >= 0);
+    }
+    gst_buffer_unref(out);
+  }
+  fail_unless(person);
+}
+GST_END_TEST
+
+GST_START_TEST(messages_tell_of_the_persons_too) {
+  const scene::World world = walk();
+  scene::Line line("motiondetect");
+  bool person = false;
+  for (int n = 0; n < kGone; ++n) {
+    GstBuffer* in = frame_of(world, n);
+    if (n % kLook == 0)
+      add_region_of_interest(in, "PEOPLE", world.figure_left(n), world.figure_top(), scene::kFigureWidth,
+                             scene::kFigureHeight, kNone);
+    gst_buffer_unref(line.through(in));
+  }
+  while (GstMessage* message = gst_bus_pop_filtered(line.bus, GST_MESSAGE_ELEMENT)) {
+    g_autoptr(CerberusTrack) track = cerberus_message_parse_track(message);
+    person = person || (track && track->region.person);
+    gst_message_unref(message);
+  }
+  fail_unless(person);
+}
+GST_END_TEST
+
+namespace {
+
+Suite* foreign_boxes_suite() {
+  watch_library_log();
+  Suite* suite = suite_create("foreign_boxes");
+  TCase* tests = tcase_create("all");
+  tcase_set_timeout(tests, 60);
+  suite_add_tcase(suite, tests);
+  tcase_add_test(tests, a_detector_of_2_hz_gives_persons_who_are_followed_between_its_looks_and_end);
+  tcase_add_test(tests, boxes_follow_a_picture_that_is_converted_and_scaled_on_its_way);
+  tcase_add_test(tests, each_object_is_one_object_of_a_line);
+  tcase_add_test(tests, other_labels_bad_boxes_and_our_own_regions_are_no_witness);
+  tcase_add_test(tests, a_person_who_is_cut_by_the_edge_is_a_person);
+  tcase_add_test(tests, messages_tell_of_the_persons_too);
+  return suite;
+}
+
+}  // namespace
+
+GST_CHECK_MAIN(foreign_boxes)
