@@ -131,6 +131,26 @@ GST_START_TEST(a_detector_of_2_hz_gives_persons_who_are_followed_between_its_loo
 }
 GST_END_TEST
 
+// Ten looks without the figure are .4 s.
+GST_START_TEST(a_detector_of_every_frame_ends_a_person_soon) {
+  const scene::World world = walk();
+  scene::Line line("motiondetect");
+  int last = 0;
+  for (int n = 0; n < kGone + 40; ++n) {
+    GstBuffer* in = frame_of(world, n);
+    if (n < kGone)
+      add_region_of_interest(in, "person", world.figure_left(n), world.figure_top(), scene::kFigureWidth,
+                             scene::kFigureHeight, .9);
+    GstBuffer* out = line.through(in);
+    const Regions regions(out);
+    for (guint i = 0; i < regions.size(); ++i)
+      if (regions[i].person) last = n;
+    gst_buffer_unref(out);
+  }
+  fail_unless(last >= kGone - 1 && last < kGone + 12, "still there at frame %d", last);
+}
+GST_END_TEST
+
 GST_START_TEST(boxes_follow_a_picture_that_is_converted_and_scaled_on_its_way) {
   const scene::World world = walk();
   scene::Line line(
@@ -272,6 +292,7 @@ Suite* foreign_boxes_suite() {
   tcase_set_timeout(tests, 60);
   suite_add_tcase(suite, tests);
   tcase_add_test(tests, a_detector_of_2_hz_gives_persons_who_are_followed_between_its_looks_and_end);
+  tcase_add_test(tests, a_detector_of_every_frame_ends_a_person_soon);
   tcase_add_test(tests, boxes_follow_a_picture_that_is_converted_and_scaled_on_its_way);
   tcase_add_test(tests, each_object_is_one_object_of_a_line);
   tcase_add_test(tests, other_labels_bad_boxes_and_our_own_regions_are_no_witness);

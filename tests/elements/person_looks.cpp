@@ -112,7 +112,7 @@ GST_END_TEST
 
 // Of three frames two are dropped between the two, among them such at which a look has begun or ended.
 GST_START_TEST(dropped_frames_between_the_two_show_nobody_where_nobody_is) {
-  Line line("personverify rate=10 ! identity name=between ! motiondetect ! identity");
+  Line line("personverify rate=5 ! identity name=between ! motiondetect ! identity");
   g_autoptr(GstElement) between = gst_bin_get_by_name(GST_BIN(line.harness->element), "between");
   g_autoptr(GstPad) pad = gst_element_get_static_pad(between, "src");
   gst_pad_add_probe(
@@ -123,21 +123,21 @@ GST_START_TEST(dropped_frames_between_the_two_show_nobody_where_nobody_is) {
       },
       nullptr, nullptr);
   int seen = 0;
-  for (int n = 0; n < 2 * kFrames; ++n) {
-    const Walk slow{.pan = -1, .start = 40, .speed = 0};
-    fail_unless_equals_int(gst_harness_push(line.harness, slow.frame(n)), GST_FLOW_OK);
+  const Walk fast{.pan = -4, .start = 20, .speed = 0};
+  for (int n = 0; n < 65; ++n) {
+    fail_unless_equals_int(gst_harness_push(line.harness, fast.frame(n)), GST_FLOW_OK);
     GstBuffer* out = gst_harness_try_pull(line.harness);
     fail_unless((out != nullptr) == (n % 3 == 0));
     if (!out) continue;
     const Regions regions(out);
     for (guint i = 0; i < regions.size(); ++i)
       if (regions[i].person) {
-        expect_person(regions, slow.left(n));
+        expect_person(regions, fast.left(n));
         ++seen;
       }
     gst_buffer_unref(out);
   }
-  fail_unless(seen > 10, "%d", seen);
+  fail_unless(seen >= 5, "%d", seen);
 }
 GST_END_TEST
 

@@ -459,6 +459,18 @@ GST_START_TEST(after_a_long_silence_of_a_live_camera_it_begins_anew) {
 }
 GST_END_TEST
 
+GST_START_TEST(the_mark_of_a_repeated_picture_stays) {
+  Verifier verifier("");
+  for (const bool repeated : {false, true}) {
+    GstBuffer* in = scene(repeated, {140});
+    if (repeated) GST_BUFFER_FLAG_SET(in, GST_BUFFER_FLAG_GAP);
+    GstBuffer* out = verifier.through(in);
+    fail_unless_equals_int(GST_BUFFER_FLAG_IS_SET(out, GST_BUFFER_FLAG_GAP), repeated);
+    gst_buffer_unref(out);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(after_a_flush_and_with_other_caps_it_begins_anew) {
   Verifier verifier("");
   regions_after(verifier, 8, {140}, false, {person_track(7, 140)});
@@ -498,6 +510,7 @@ Suite* personverify_suite() {
   tcase_add_test(tests, a_model_that_is_refused_by_a_later_picture_is_the_same_error);
   tcase_add_test(tests, a_single_time_that_is_far_off_forgets_nobody);
   tcase_add_test(tests, after_a_long_silence_of_a_live_camera_it_begins_anew);
+  tcase_add_test(tests, the_mark_of_a_repeated_picture_stays);
   tcase_add_test(tests, after_a_flush_and_with_other_caps_it_begins_anew);
   return suite;
 }
