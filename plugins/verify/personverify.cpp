@@ -497,7 +497,6 @@ void cerberus_person_verify_init(CerberusPersonVerify* self) {
   gst_video_info_init(&self->priv->state.info);
   gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
   gst_base_transform_set_passthrough(GST_BASE_TRANSFORM(self), FALSE);
-  gst_base_transform_set_gap_aware(GST_BASE_TRANSFORM(self), TRUE);  // the mark of a repeated picture stays
 }
 
 void cerberus_person_verify_class_init(CerberusPersonVerifyClass* klass) {
