@@ -20,10 +20,11 @@ int rank(TrackState state) {
   return 2;
 }
 
-// Returns whether a is a better target than b: a seen track precedes a stopped one, and that a coasted one; then
-// `choice` decides. Without known distances the lower edges of the boxes are compared: lower in the picture is nearer
+// Returns whether a is a better target than b: a person precedes what only moves, a seen track a stopped one, and that a
+// coasted one; then `choice` decides. Without known distances the lower edges of the boxes are compared: lower in the picture is nearer
 // on a floor.
 bool better(const Track& a, const Track& b, TargetChoice choice) {
+  if (a.person != b.person) return a.person;
   if (rank(a.state) != rank(b.state)) return rank(a.state) < rank(b.state);
   const double size_a = a.width * a.height, size_b = b.width * b.height;
   switch (choice) {
@@ -60,6 +61,7 @@ void Follower::watch(std::span<const Track> tracks, Time time, TargetChoice choi
     if (best == nullptr || better(track, *best, choice)) best = &track;
   }
 
+  if (kept != nullptr && best->person && !kept->person) kept = nullptr;
   if (kept != nullptr) {
     if (kept->state == TrackState::seen) stopped_ = kLongAgo;
     if (kept->state == TrackState::stopped && stopped_ == kLongAgo) stopped_ = time;

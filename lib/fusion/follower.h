@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Selects the track to follow: the present target while it lives, else the one that the user prefers. A stopped target
-// is followed for a limited time.
+// Selects the track to follow: the present target while it lives, else the one that the user prefers. Persons precede what
+// only moves, also as the present target. A stopped target is followed for a limited time.
 #pragma once
 
 #include <array>

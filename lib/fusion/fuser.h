@@ -45,6 +45,7 @@ struct Track {
   double distance = kUnknown;                  // metres
   Time age{};
   TrackState state = TrackState::seen;
+  bool person = false;  // a person detector has seen it
 };
 
 struct Input {

@@ -31,7 +31,8 @@ inline void read_tracks(GstBuffer* buffer, std::vector<fusion::Track>& tracks) {
                       .height = region.height,
                       .distance = region.distance,
                       .age = time_of(region.age),
-                      .state = static_cast<fusion::TrackState>(region.state)});
+                      .state = static_cast<fusion::TrackState>(region.state),
+                      .person = region.person != FALSE});
   }
 }
 

@@ -120,7 +120,7 @@ def main():
         make = f'gst-launch-1.0 -q {BALL} ! x264enc ! matroskamux ! filesink location=ball.mkv'
         subprocess.run(make.split(), check=True, timeout=LIMIT)
         missing = [name for name in ('personverify', 'mqttpublish')
-                   if subprocess.run(['gst-inspect-1.0', '--exists', name], check=False).returncode != 0]
+                   if subprocess.run(['gst-inspect-1.0', name], capture_output=True, check=False).returncode != 0]
         for path, line in lines():
             if any(name in line for name in missing):
                 print(f'skip {path}: {line} (the element is not built)')

@@ -36,6 +36,44 @@ START_TEST(the_one_followed_is_kept_though_others_are_nearer) {
 }
 END_TEST
 
+START_TEST(a_person_is_followed_rather_than_what_only_moves) {
+  Track near = person(1), far = person(2);
+  near.distance = 3;
+  far.distance = 9;
+  far.person = true;
+  Stream stream;
+  stream.tracks = {near, far};
+  const Decision& decision = stream.frame();
+  ck_assert_int_eq(decision.target, 2);
+  // Once known to be a person as well, the nearer one does not take the target over.
+  stream.tracks[0].person = true;
+  stream.frame();
+  ck_assert_int_eq(decision.target, 2);
+}
+END_TEST
+
+START_TEST(a_target_that_only_moves_gives_way_to_a_person) {
+  Track curtain = person(1), visitor = person(2);
+  curtain.distance = 3;
+  visitor.distance = 9;
+  Stream stream;
+  stream.tracks = {curtain};
+  const Decision& decision = stream.frame();
+  stream.tracks = {curtain, visitor};
+  stream.frame();
+  ck_assert_int_eq(decision.target, 1);  // nobody knows yet that it is one
+  stream.tracks[1].person = true;
+  stream.frame();
+  ck_assert_int_eq(decision.target, 2);
+  stream.tracks[1].state = TrackState::stopped;
+  stream.frame();
+  ck_assert_int_eq(decision.target, 2);
+  stream.tracks = {curtain};
+  stream.frame();
+  ck_assert_int_eq(decision.target, 1);
+}
+END_TEST
+
 START_TEST(a_target_is_chosen_by_nearness_size_or_newness) {
   Track near = person(1), large = person(2), newest = person(3);
   near.distance = 2;
@@ -162,6 +200,7 @@ int main() {
   return cerberus::tests::run_suite(
       "follower",
       {a_track_is_followed_and_kept_half_a_second, the_one_followed_is_kept_though_others_are_nearer,
+       a_person_is_followed_rather_than_what_only_moves, a_target_that_only_moves_gives_way_to_a_person,
        a_target_is_chosen_by_nearness_size_or_newness, without_distances_the_lowest_feet_are_the_nearest,
        a_seen_track_precedes_a_stopped_one_and_a_coasted_one,
        a_stopped_track_is_followed_for_half_a_minute_and_then_left,
