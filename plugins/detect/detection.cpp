@@ -383,10 +383,19 @@ void Detection::publish(const Frame& frame, const vision::LumaSource& luma, doub
     EvidenceInput seen{
         .size = frame.size, .luma = luma, .seconds = step, .fresh = frame.fresh, .motion = frame.motion};
     if (const auto* camera = cerberus_buffer_peek_camera_motion(frame.buffer)) seen.calm = camera->calm;
+    // The detector looks for the first time, amid a scene: the tracks of before go on, with their identities.
+    if (!state.judged && !frame.fresh) {
+      seen.fresh = true;
+      state.evidence.update(seen, state.moving, {}, false);
+      seen.fresh = false;
+      seen.seconds = 0;
+      seen.motion = {};
+    }
     state.published = state.evidence.update(seen, state.moving, state.looks, state.looks.persons_only);
   } else {
     state.published = state.moving;
   }
+  state.judged = state.judges;
   attach_published(frame.buffer);
   if (has(Stage::tracks)) watch(frame, step);
 }

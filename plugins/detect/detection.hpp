@@ -62,7 +62,8 @@ class Detection : public Analyser {
     PersonLooks looks;                              // of a person detector upstream: of the last frame
     std::vector<ForeignBox> boxes;                  // that other elements have found, of the last frame
     vision::LookTimes look_times;                   // of those of persons
-    bool has_looks = false, judges = false;         // there has been one; what moves is judged by them
+    bool has_looks = false;                         // there has been one
+    bool judges = false, judged = false;            // by it, tracks of what moves; those of the last frame
     vision::LumaStretch stretch;                    // of pictures that no stage has reduced
     CerberusCameraMotion motion{};                  // of the last picture
     std::optional<double> calm;                     // likewise, where this element knows it

@@ -151,6 +151,31 @@ GST_START_TEST(a_detector_of_every_frame_ends_a_person_soon) {
 }
 GST_END_TEST
 
+// Before a camera that stands what moves has a track before the detector looks first: it is the same afterwards.
+GST_START_TEST(the_first_look_leaves_the_tracks_of_before_as_they_are) {
+  scene::World world;
+  scene::Line line("motiondetect");
+  constexpr int kFirst = 20;
+  guint before = 0;
+  for (int n = 0; n < 60; ++n) {
+    GstBuffer* in = scene::grey_buffer(world, n);
+    if (n >= kFirst && (n - kFirst) % kLook == 0)
+      add_region_of_interest(in, "person", world.figure_left(n), world.figure_top(), scene::kFigureWidth,
+                             scene::kFigureHeight, .9);
+    GstBuffer* out = line.through(in);
+    const Regions regions(out);
+    if (n == kFirst - 1) {
+      fail_unless_equals_int(regions.size(), 1);
+      before = regions[0].id;
+    } else if (n >= kFirst) {
+      fail_unless(regions.size() == 1 && regions[0].id == before && regions[0].motion, "frame %d", n);
+      fail_unless(regions[0].person);
+    }
+    gst_buffer_unref(out);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(boxes_follow_a_picture_that_is_converted_and_scaled_on_its_way) {
   const scene::World world = walk();
   scene::Line line(
@@ -293,6 +318,7 @@ Suite* foreign_boxes_suite() {
   suite_add_tcase(suite, tests);
   tcase_add_test(tests, a_detector_of_2_hz_gives_persons_who_are_followed_between_its_looks_and_end);
   tcase_add_test(tests, a_detector_of_every_frame_ends_a_person_soon);
+  tcase_add_test(tests, the_first_look_leaves_the_tracks_of_before_as_they_are);
   tcase_add_test(tests, boxes_follow_a_picture_that_is_converted_and_scaled_on_its_way);
   tcase_add_test(tests, each_object_is_one_object_of_a_line);
   tcase_add_test(tests, other_labels_bad_boxes_and_our_own_regions_are_no_witness);
