@@ -159,7 +159,6 @@ const std::vector<Mechanism> kMechanisms{
      {"track.upright=1000000"}},
     {"panned", {}, 3, {"track.panned_acceleration=0.25", "track.panned_widens=1", "track.panned_misfit=0.4"}},
     {"fast", {}, 1, {"track.fast=1000000"}},
-    {"newly_visible", {"tracking/tracker.cpp update_view"}, 2, {"view.newly_visible_share=0"}},
 };
 
 std::vector<std::string> lines_of(const fs::path& file) {

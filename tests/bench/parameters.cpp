@@ -224,10 +224,6 @@ void name(Numbers n, AppearanceParameters& p) {
          N(least_samples)});
 }
 
-void name(Numbers n, ViewParameters& p) {
-  n.add({N(newly_visible), N(newly_visible_share)});
-}
-
 #undef D
 #undef N
 
@@ -266,7 +262,6 @@ std::vector<NamedNumber> named_numbers(DetectorParameters& p) {
   stage("association", p.tracking.association);
   stage("search", p.tracking.search);
   stage("appearance", p.tracking.appearance);
-  stage("view", p.tracking.view);
   return all;
 }
 

@@ -85,19 +85,18 @@ START_TEST(a_track_is_confirmed_that_was_seen_often_for_long_enough_and_has_move
   const struct {
     int hits, frames;
     double age, travel;
-    bool newly_visible, confirmed;
+    bool confirmed;
   } cases[] = {
-      {3, 6, 0.2, 0.12, false, true},    // 3 = .5 x 6
-      {3, 7, 0.2, 0.12, false, false},   // 3 < .5 x 7
-      {2, 3, 0.2, 0.12, false, false},   // too few,
-      {2, 3, 0.59, 0.12, false, false},  //
-      {2, 3, 0.61, 0.12, false, true},   // but for a low frame rate: 3 x .2 s
-      {3, 5, 0.19, 0.12, false, false},  // .99 x .2 s
-      {3, 5, 0.2, 0.11, false, false},   // it has not moved,
-      {3, 5, 0.2, 0, true, true},        // which it need not where the camera has turned to
+      {3, 6, 0.2, 0.12, true},    // 3 = .5 x 6
+      {3, 7, 0.2, 0.12, false},   // 3 < .5 x 7
+      {2, 3, 0.2, 0.12, false},   // too few,
+      {2, 3, 0.59, 0.12, false},  //
+      {2, 3, 0.61, 0.12, true},   // but for a low frame rate: 3 x .2 s
+      {3, 5, 0.19, 0.12, false},  // .99 x .2 s
+      {3, 5, 0.2, 0.11, false},   // it has not moved
   };
   for (const auto& c : cases) {
-    TrackHypothesis t = track(Tentative{c.hits, c.frames, c.newly_visible});
+    TrackHypothesis t = track(Tentative{c.hits, c.frames});
     t.age = c.age;
     t.travel.most = c.travel;
     t.match.region = 0;

@@ -87,7 +87,6 @@ START_TEST(every_number_of_every_stage_has_a_name_of_its_own) {
   all_are_named("association", t.association);
   all_are_named("search", t.search);
   all_are_named("appearance", t.appearance);
-  all_are_named("view", t.view);
   std::set<std::string> names;
   for (const NamedNumber& n : named_numbers(p))
     ck_assert_msg(names.insert(n.name).second, "%s", n.name.c_str());
@@ -113,7 +112,7 @@ START_TEST(a_wrong_assignment_changes_nothing_and_the_error_lists_the_names) {
   } wrong[] = {
       {"track.gates=3", "no number is named \"track.gates\"", " track.gate "},
       {"tracks.gate=3", "no number is named \"tracks.gate\"", " regions.least_share "},
-      {"gate=3", "no number is named \"gate\"", " view.newly_visible_share"},
+      {"gate=3", "no number is named \"gate\"", " appearance.least_samples"},
       {"track.gate", "\"track.gate\" is not stage.name=value", " track.gate_noise "},
       {"", "\"\" is not stage.name=value", " life.still "},
       {"track.gate=", "track.gate takes a number, not \"\"", " track.gate "},

@@ -176,26 +176,11 @@ START_TEST(a_person_who_walks_out_of_a_head_s_picture_is_expected_back_at_that_s
 }
 END_TEST
 
-START_TEST(an_object_uncovered_by_a_turning_camera_is_published_without_travel) {
-  for (const bool turned : {true, false}) {
-    Turning camera;
-    camera.step(0, {});
-    if (turned) camera.turn(20, 4);
-    for (int k = 0; k < 6; ++k) {
-      if (turned) camera.step(24 + 4 * k, {65 + 0.1 * k});  // first seen at the right edge
-      if (!turned) camera.step(0, {20 + 0.1 * k});
-    }
-    ck_assert_uint_eq(camera.tracks.size(), turned);
-  }
-}
-END_TEST
-
 int main() {
   return run_suite("turning",
                    {an_off_screen_track_keeps_its_identity_when_the_camera_returns,
                     a_track_behind_the_camera_keeps_its_identity, a_person_in_another_place_is_a_new_track,
                     an_off_screen_track_ends_after_the_away_time,
                     a_person_who_leaves_the_picture_of_a_still_camera_returns_as_a_new_track,
-                    a_person_who_walks_out_of_a_head_s_picture_is_expected_back_at_that_side,
-                    an_object_uncovered_by_a_turning_camera_is_published_without_travel});
+                    a_person_who_walks_out_of_a_head_s_picture_is_expected_back_at_that_side});
 }

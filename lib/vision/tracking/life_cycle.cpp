@@ -110,8 +110,8 @@ bool LifeCycle::is_confirmed(const TrackHypothesis& t) const {
   if (options_.confirm_time <= 0) return true;
   const bool enough = data.hits >= q.least_hits ||
                       (data.hits >= q.slow_least_hits && t.age >= q.slow_confirm * options_.confirm_time);
-  return enough && (data.newly_visible || t.travel.most >= q.least_travel) &&
-         t.age >= q.confirm_slack * options_.confirm_time && data.hits >= q.hit_share * data.frames;
+  return enough && t.travel.most >= q.least_travel && t.age >= q.confirm_slack * options_.confirm_time &&
+         data.hits >= q.hit_share * data.frames;
 }
 
 // Lost when it has been without region for a while, and mostly was.

@@ -27,8 +27,7 @@ enum class TrackPhase { tentative, confirmed, coasted, stopped, off_screen, lost
 
 // Not confirmed yet: it has no identity and is not published.
 struct Tentative {
-  int hits = 1, frames = 1;    // frames with a region, frames in all
-  bool newly_visible = false;  // first seen where the camera had just begun to look
+  int hits = 1, frames = 1;  // frames with a region, frames in all
 };
 // With a region in the last frame.
 struct Confirmed {};

@@ -31,14 +31,12 @@ struct Tracker::State {
   LifeCycle life_cycle{parameters.life};
   OrientationEstimate orientation;
   RegionAppearances appearances{parameters.search, parameters.appearance};
-  Box established;       // part of the picture that has been in view for a while
   bool turning = false;  // the camera moved since the last frame
 
   explicit State(const TrackingParameters& numbers = {}) : parameters(numbers) {
     preallocate(kUsualTracks, kUsualRegions);
   }
   void preallocate(std::size_t track_count, std::size_t region_count);
-  void update_view(const Transform& motion);
   void take(std::span<const Region> input);
   void predict(const Transform& motion);
   void associate();
@@ -58,23 +56,6 @@ void Tracker::State::preallocate(std::size_t track_count, std::size_t region_cou
   regions.reserve(region_count);
   appearances.reserve(region_count);
   association.reserve(track_count, region_count);
-}
-
-// The established view moves with the scene, and new parts of the scene belong to it after about newly_visible.
-void Tracker::State::update_view(const Transform& motion) {
-  turning = !motion.is_identity();
-  const Box whole{0, 0, static_cast<double>(frame.width), static_cast<double>(frame.height)};
-  if (!turning && established.area() == whole.area()) return;
-  const Point low = motion.apply({established.x, established.y});
-  const Point high = motion.apply({established.right(), established.bottom()});
-  const double gain = std::min(1.0, seconds / parameters.view.newly_visible);
-  const auto side = [&](double at, double edge, double most) {
-    const double inside = std::clamp(std::isfinite(at) ? at : edge, 0.0, most);
-    return inside + gain * (edge - inside);
-  };
-  const double x0 = side(low.x, 0, whole.width), x1 = side(high.x, whole.width, whole.width);
-  const double y0 = side(low.y, 0, whole.height), y1 = side(high.y, whole.height, whole.height);
-  established = {x0, y0, std::max(0.0, x1 - x0), std::max(0.0, y1 - y0)};
 }
 
 // Copies the valid regions, the largest kMaximumRegions at most.
@@ -164,11 +145,8 @@ void Tracker::State::start_tracks() {
   for (std::size_t j = 0; j < regions.size(); ++j) {
     if (!association.is_new(j) || tracks.size() >= kMaximumTracks) continue;
     if (tracks.size() == tracks.capacity()) preallocate(2 * tracks.size(), regions.capacity());
-    const Box& box = regions[j].box;
     tracks.push_back(TrackHypothesis::first_seen(regions[j], parameters.track));
     tracks.back().match.region = static_cast<int>(j);
-    std::get<Tentative>(tracks.back().life).newly_visible =
-        overlap_area(box, established) < parameters.view.newly_visible_share * box.area();
   }
 }
 
@@ -236,15 +214,13 @@ std::span<const Track> Tracker::update(std::span<const Region> regions, const Tr
                                        const std::optional<CameraOrientation>& camera, const Sight& input) {
   State& s = *state_;
   if (seconds > 0 && std::isfinite(seconds)) s.seconds = seconds;
-  if (frame.width != s.frame.width || frame.height != s.frame.height)
-    s.established = {0, 0, static_cast<double>(frame.width), static_cast<double>(frame.height)};
   s.frame = frame;
   if (s.orientation.update(camera, motion, frame)) {  // angles have another origin now
     for (TrackHypothesis& t : s.tracks)
       if (t.is(TrackPhase::off_screen)) LifeCycle::lose(t);
     s.remove_lost();
   }
-  s.update_view(motion);
+  s.turning = !motion.is_identity();
   s.take(regions);
   s.appearances.update(input, s.regions, motion, frame);
   s.predict(motion);
