@@ -126,7 +126,6 @@ const std::vector<Mechanism> kMechanisms{
      {"tracking/data_association.cpp merge_fragments", "tracking/data_association.cpp merges"},
      4,
      {"association.merge_time=1000000"}},
-    {"hollow", {"tracking/life_cycle.cpp end_hollow"}, 2, {"life.hollow_inside=2"}},
     {"duplicates",
      {"tracking/life_cycle.cpp end_duplicates", "tracking/life_cycle.cpp are_duplicates"},
      4,

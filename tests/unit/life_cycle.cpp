@@ -384,30 +384,6 @@ START_TEST(tracks_in_view_are_published_while_their_place_is_certain) {
 }
 END_TEST
 
-START_TEST(a_blob_that_came_apart_ends) {
-  const auto left = [](const TrackHypothesis& t, std::initializer_list<Box> boxes) {
-    std::vector<Region> regions;
-    for (const Box& box : boxes) regions.push_back({box, box.area(), 0.9, 1});
-    std::array tracks{t};
-    LifeCycle().end_hollow(tracks, regions);
-    return !tracks[0].is(TrackPhase::lost);
-  };
-  const Box one{300, 190, 20, 30}, two{320, 260, 20, 30};
-  ck_assert(!left(track(Confirmed{}), {one, two}));
-  ck_assert(!left(track(Stopped{}), {one, two}));
-  ck_assert(left(track(Confirmed{}), {one}));
-  ck_assert(left(track(Confirmed{}), {one, {320, 260, 10, 39}}));   // less than .1 of 40 x 100
-  ck_assert(!left(track(Confirmed{}), {one, {320, 240, 10, 41}}));  //
-  ck_assert(left(track(Confirmed{}), {one, {329, 260, 20, 30}}));   // 11 of 20 columns: less than .6
-  ck_assert(!left(track(Confirmed{}), {one, {327, 260, 20, 30}}));  // 13 of 20
-  ck_assert(left(track(OffScreen{}), {one, two}));
-  ck_assert(left(track(Tentative{}), {one, two}));
-  TrackHypothesis seen = track(Confirmed{});
-  seen.match.region = 0;
-  ck_assert(left(seen, {one, two}));
-}
-END_TEST
-
 // Which of two tracks end.
 START_TEST(of_two_tracks_on_one_object_one_ends) {
   using Pair = std::array<TrackHypothesis, 2>;
@@ -471,6 +447,5 @@ int main() {
        a_stopped_track_whose_place_is_in_view_again_is_whole_there,
        a_track_that_comes_back_is_what_it_was_and_takes_the_place_of_its_region,
        an_off_screen_track_is_lost_after_its_time_or_where_it_is_expected,
-       tracks_in_view_are_published_while_their_place_is_certain, a_blob_that_came_apart_ends,
-       of_two_tracks_on_one_object_one_ends});
+       tracks_in_view_are_published_while_their_place_is_certain, of_two_tracks_on_one_object_one_ends});
 }

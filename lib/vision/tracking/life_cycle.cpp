@@ -217,18 +217,6 @@ void LifeCycle::fade(TrackHypothesis& t, double time) const {
   t.confidence *= std::exp(-frame_.seconds / std::max(time, kLeastTime));
 }
 
-void LifeCycle::end_hollow(std::span<TrackHypothesis> tracks, std::span<const Region> regions) const {
-  for (TrackHypothesis& t : tracks) {
-    if (t.match.region >= 0 || !t.in_view()) continue;
-    const Box box = t.box();
-    const auto inside = std::ranges::count_if(regions, [&](const Region& r) {
-      return overlap_area(r.box, box) > parameters_.hollow_inside * r.box.area() &&
-             r.box.area() > parameters_.hollow_part * box.area();
-    });
-    if (inside > 1) lose(t);
-  }
-}
-
 bool LifeCycle::are_duplicates(const TrackHypothesis& a, const TrackHypothesis& b) const {
   const Parameters& q = parameters_;
   if (intersection_over_union(a.box(), b.box()) < q.duplicate) return false;

@@ -64,9 +64,6 @@ class LifeCycle {
     // Off-screen.
     double off_screen_fit = 0.5;      // s of regions of its extent
     double off_screen_travel = 0.45;  // S
-    // Blobs that have come apart: a track without region was a blob of several if two regions lie in it with
-    double hollow_inside = 0.6;  // of the region's area,
-    double hollow_part = 0.1;    // and of the track's
     // Two tracks on one object.
     double duplicate = 0.7;         // intersection over union
     double duplicate_shared = 1.0;  // s in one region after which one of the two ends
@@ -97,8 +94,6 @@ class LifeCycle {
 
   // A frame's transitions of all tracks, after those with a region were corrected.
   void advance(std::span<TrackHypothesis> tracks, const Frame& frame, const TrackOptions& options);
-  // Ends tracks without region whose box holds several regions: each was the blob that they have come out of.
-  void end_hollow(std::span<TrackHypothesis> tracks, std::span<const Region> regions) const;
   // Ends one of two tracks in view on one object: the one without region, or else the younger.
   void end_duplicates(std::span<TrackHypothesis> tracks) const;
   // The state in which a track is published after advance(), if it is.

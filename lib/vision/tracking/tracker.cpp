@@ -225,8 +225,6 @@ std::span<const Track> Tracker::update(std::span<const Region> regions, const Tr
   s.appearances.update(input, s.regions, motion, frame);
   s.predict(motion);
   s.associate();
-  s.life_cycle.end_hollow(s.tracks, s.regions);
-  s.remove_lost();
   s.start_tracks();
   s.life_cycle.advance(s.tracks, {frame, s.seconds, s.turning, s.orientation.gaze(), s.orientation.turns()},
                        s.options);
