@@ -192,12 +192,12 @@ void name(Numbers n, TrackParameters& p) {
 }
 
 void name(Numbers n, LifeCycle::Parameters& p) {
-  n.add({N(least_travel),      N(least_hits), N(slow_least_hits),  N(slow_confirm),
-         N(confirm_slack),     N(hit_share),  N(tentative_coast),  N(coast_share),
-         N(border_coast),      N(proven),     N(certain),          N(sliver),
-         N(occluded_coast),    N(still),      N(fitted),           N(stop_travel),
-         N(remnant),           N(seen),       N(covered),          N(off_screen_fit),
-         N(off_screen_travel), N(duplicate),  N(duplicate_shared), N(duplicate_unseen)});
+  n.add({N(least_travel),     N(least_hits), N(slow_least_hits), N(slow_confirm),
+         N(confirm_slack),    N(hit_share),  N(tentative_coast), N(coast_share),
+         N(border_coast),     N(proven),     N(certain),         N(sliver),
+         N(occluded_coast),   N(still),      N(fitted),          N(stop_travel),
+         N(remnant),          N(seen),       N(covered),         N(off_screen_fit),
+         N(off_screen_travel)});
 }
 
 void name(Numbers n, DataAssociation::Parameters& p) {

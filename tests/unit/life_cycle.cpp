@@ -5,7 +5,6 @@
 
 #include <check.h>
 
-#include <array>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -384,54 +383,6 @@ START_TEST(tracks_in_view_are_published_while_their_place_is_certain) {
 }
 END_TEST
 
-// Which of two tracks end.
-START_TEST(of_two_tracks_on_one_object_one_ends) {
-  using Pair = std::array<TrackHypothesis, 2>;
-  const auto ends = [](const std::function<void(TrackHypothesis&, TrackHypothesis&)>& change) {
-    Pair two{track(Coasted{}), track(Coasted{})};
-    change(two[0], two[1]);
-    LifeCycle().end_duplicates(two);
-    return (two[0].is(TrackPhase::lost) ? 1 : 0) + (two[1].is(TrackPhase::lost) ? 2 : 0);
-  };
-  using T = TrackHypothesis;
-  ck_assert_int_eq(ends([](T& a, T&) { a.unseen = 0.49; }), 0);
-  ck_assert_int_eq(ends([](T& a, T&) { a.unseen = 0.5; }), 1);
-  ck_assert_int_eq(ends([](T& a, T& b) { a.unseen = 0.5, b.unseen = 0.6; }), 2);
-  const auto one_seen = [](T& a, T& b) {
-    a.life = Confirmed{};
-    a.match.region = 0;
-    b.unseen = 0.5;
-  };
-  ck_assert_int_eq(ends(one_seen), 2);
-  // 33 of 47 columns overlap, .70, and 32 of 48, .67.
-  ck_assert_int_eq(ends([&](T& a, T& b) { one_seen(a, b), b.x.position += 7; }), 2);
-  ck_assert_int_eq(ends([&](T& a, T& b) { one_seen(a, b), b.x.position += 8; }), 0);
-  ck_assert_int_eq(ends([&](T& a, T& b) { one_seen(a, b), b.life = OffScreen{}; }), 0);
-  ck_assert_int_eq(ends([&](T& a, T& b) { one_seen(a, b), b.match.region = 1; }), 0);
-  // One stands, and the other came from elsewhere, .5 S away.
-  const auto passes = [&](T& a, T& b) {
-    one_seen(a, b);
-    b.life = Stopped{};
-    a.travel.origin.x -= 50;
-  };
-  ck_assert_int_eq(ends(passes), 0);
-  ck_assert_int_eq(ends([&](T& a, T& b) { passes(a, b), a.travel.origin.x += 25; }), 2);
-  // In one region the younger one ends.
-  const auto share = [](double time, double from) {
-    return [=](T& a, T& b) {
-      for (T* t : {&a, &b}) t->life = Confirmed{}, t->match.region = 0;
-      a.age = 9;
-      b.shared.time = time;
-      b.travel.origin.x -= from;
-    };
-  };
-  ck_assert_int_eq(ends(share(0.9, 0)), 0);
-  ck_assert_int_eq(ends(share(1, 0)), 1);
-  ck_assert_int_eq(ends(share(2.9, 50)), 0);
-  ck_assert_int_eq(ends(share(3, 50)), 1);
-}
-END_TEST
-
 int main() {
   return cerberus::tests::run_suite(
       "life_cycle",
@@ -447,5 +398,5 @@ int main() {
        a_stopped_track_whose_place_is_in_view_again_is_whole_there,
        a_track_that_comes_back_is_what_it_was_and_takes_the_place_of_its_region,
        an_off_screen_track_is_lost_after_its_time_or_where_it_is_expected,
-       tracks_in_view_are_published_while_their_place_is_certain, of_two_tracks_on_one_object_one_ends});
+       tracks_in_view_are_published_while_their_place_is_certain});
 }

@@ -217,31 +217,6 @@ void LifeCycle::fade(TrackHypothesis& t, double time) const {
   t.confidence *= std::exp(-frame_.seconds / std::max(time, kLeastTime));
 }
 
-bool LifeCycle::are_duplicates(const TrackHypothesis& a, const TrackHypothesis& b) const {
-  const Parameters& q = parameters_;
-  if (intersection_over_union(a.box(), b.box()) < q.duplicate) return false;
-  const bool different = look_different(a, b);
-  if (a.match.region == b.match.region && a.match.region >= 0) {
-    if (different && std::max(a.shared.unlocated, b.shared.unlocated) < a.parameters->crossing) return false;
-    return std::max(a.shared.time, b.shared.time) >=
-           (went_apart(a, b) ? a.parameters->crossing : q.duplicate_shared);
-  }
-  if (a.match.region >= 0 && b.match.region >= 0) return false;
-  // One passes in front of the other, which stands there.
-  if ((a.stands() || b.stands()) && (different || went_apart(a, b))) return false;
-  return std::max(a.unseen, b.unseen) >= q.duplicate_unseen;
-}
-
-void LifeCycle::end_duplicates(std::span<TrackHypothesis> tracks) const {
-  for (std::size_t i = 0; i < tracks.size(); ++i)
-    for (std::size_t j = i + 1; j < tracks.size(); ++j) {
-      TrackHypothesis &a = tracks[i], &b = tracks[j];
-      if (!a.in_view() || !b.in_view() || !are_duplicates(a, b)) continue;
-      const bool first = a.unseen != b.unseen ? a.unseen > b.unseen : a.age < b.age;
-      lose(first ? a : b);
-    }
-}
-
 std::optional<TrackState> LifeCycle::published(const TrackHypothesis& t) const {
   const Parameters& q = parameters_;
   if (t.match.occluded && t.shared.unlocated > q.occluded_coast) return {};

@@ -64,10 +64,6 @@ class LifeCycle {
     // Off-screen.
     double off_screen_fit = 0.5;      // s of regions of its extent
     double off_screen_travel = 0.45;  // S
-    // Two tracks on one object.
-    double duplicate = 0.7;         // intersection over union
-    double duplicate_shared = 1.0;  // s in one region after which one of the two ends
-    double duplicate_unseen = 0.5;  // s, the same where one has no region
   };
 
   LifeCycle() = default;
@@ -94,8 +90,6 @@ class LifeCycle {
 
   // A frame's transitions of all tracks, after those with a region were corrected.
   void advance(std::span<TrackHypothesis> tracks, const Frame& frame, const TrackOptions& options);
-  // Ends one of two tracks in view on one object: the one without region, or else the younger.
-  void end_duplicates(std::span<TrackHypothesis> tracks) const;
   // The state in which a track is published after advance(), if it is.
   std::optional<TrackState> published(const TrackHypothesis& track) const;
 
@@ -112,7 +106,6 @@ class LifeCycle {
   bool is_sliver(const TrackHypothesis& track) const;
   double coast_time(const TrackHypothesis& track) const;
   void fade(TrackHypothesis& track, double time) const;
-  bool are_duplicates(const TrackHypothesis& a, const TrackHypothesis& b) const;
 
   Parameters parameters_;
   std::uint32_t last_id_ = 0;

@@ -229,8 +229,6 @@ std::span<const Track> Tracker::update(std::span<const Region> regions, const Tr
   s.life_cycle.advance(s.tracks, {frame, s.seconds, s.turning, s.orientation.gaze(), s.orientation.turns()},
                        s.options);
   s.remove_lost();
-  s.life_cycle.end_duplicates(s.tracks);
-  s.remove_lost();
   s.publish();
   s.appearances.done();
   return s.published;
