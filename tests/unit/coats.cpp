@@ -253,7 +253,7 @@ START_TEST(another_appearance_after_off_screen_is_a_new_track) {
       place.step({p}, pan);
       if (k == 14) ck_assert_uint_eq(place.tracks.size(), 0);
     }
-    for (int k = 0; k < 8; ++k) {
+    for (int k = 0; k < 16; ++k) {
       p.x = x += 1;
       place.step({p});
     }
