@@ -5,6 +5,13 @@
 
 namespace cerberus::vision {
 
+Box inside(const Box& box, Size picture) {
+  const double left = std::clamp<double>(box.x, 0, picture.width),
+               top = std::clamp<double>(box.y, 0, picture.height);
+  return {left, top, std::clamp<double>(box.right(), 0, picture.width) - left,
+          std::clamp<double>(box.bottom(), 0, picture.height) - top};
+}
+
 Box core_of(const Box& box, double width, double height) {
   return {box.x + box.width * (1 - width) / 2, box.y + box.height * (1 - height) / 2, box.width * width,
           box.height * height};

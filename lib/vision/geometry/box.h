@@ -2,6 +2,8 @@
 // An upright rectangle around an object.
 #pragma once
 
+#include "vision/geometry/transform.h"
+
 namespace cerberus::vision {
 
 struct Box {
@@ -10,6 +12,11 @@ struct Box {
   double bottom() const { return y + height; }
   double area() const { return width * height; }
 };
+inline Point centre(const Box& b) {
+  return {b.x + b.width / 2, b.y + b.height / 2};
+}
+// The part that lies in a picture of this size; of no area where there is none.
+Box inside(const Box& box, Size picture);
 // The part around the box's middle that has these shares of its width and height.
 Box core_of(const Box& box, double width, double height);
 double overlap_area(const Box& a, const Box& b);

@@ -14,7 +14,7 @@ Box bounding(const Box& a, const Box& b) {
 
 // From the centre where the track is expected, frame pixels.
 double distance_between(const TrackHypothesis& t, const Box& box) {
-  return std::hypot(box.x + box.width / 2 - t.x.position, box.y + box.height / 2 - t.y.position);
+  return std::hypot(centre(box).x - t.x.position, centre(box).y - t.y.position);
 }
 
 }  // namespace

@@ -5,6 +5,10 @@
 
 namespace cerberus::vision {
 
+constexpr double square(double v) {
+  return v * v;
+}
+
 // Position and velocity along one axis, constant velocity disturbed by white acceleration noise.
 struct MovingValue {
   double position = 0, velocity = 0;

@@ -3,18 +3,6 @@
 #include "vision/tracking/track_hypothesis.h"
 
 namespace cerberus::vision {
-namespace {
-
-double square(double v) {
-  return v * v;
-}
-
-Point centre(const Box& b) {
-  return {b.x + b.width / 2, b.y + b.height / 2};
-}
-
-}  // namespace
-
 void TrackHypothesis::correct(const Region& region, bool alone, double seconds, Size frame,
                               const std::optional<Point>& found) {
   const Box& seen = region.box;

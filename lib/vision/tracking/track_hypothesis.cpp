@@ -19,14 +19,6 @@ static_assert(kHasData<TrackPhase::tentative, Tentative> && kHasData<TrackPhase:
 
 constexpr double kHalfPixel = 0.5;  // boxes count from pixels' corners, transforms from their centres
 
-double square(double v) {
-  return v * v;
-}
-
-Point centre(const Box& b) {
-  return {b.x + b.width / 2, b.y + b.height / 2};
-}
-
 }  // namespace
 
 Residual compare_extents(double expected_from, double expected_to, double from, double to,

@@ -155,21 +155,10 @@ void Tracker::State::publish() {
   for (const TrackHypothesis& t : tracks) {
     const auto state = life_cycle.published(t);
     if (!state) continue;
-    const Box box = t.box();
-    const double x0 = std::clamp(box.x, 0.0, static_cast<double>(frame.width));
-    const double y0 = std::clamp(box.y, 0.0, static_cast<double>(frame.height));
-    const double x1 = std::clamp(box.right(), 0.0, static_cast<double>(frame.width));
-    const double y1 = std::clamp(box.bottom(), 0.0, static_cast<double>(frame.height));
-    if (x1 - x0 < 1 || y1 - y0 < 1) continue;
-    published.push_back({t.id,
-                         {x0, y0, x1 - x0, y1 - y0},
-                         t.x.velocity,
-                         t.y.velocity,
-                         t.top_speed,
-                         t.age,
-                         std::clamp(t.confidence, 0.0, 1.0),
-                         *state,
-                         t.kind});
+    const Box box = inside(t.box(), frame);
+    if (box.width < 1 || box.height < 1) continue;
+    published.push_back({t.id, box, t.x.velocity, t.y.velocity, t.top_speed, t.age,
+                         std::clamp(t.confidence, 0.0, 1.0), *state, t.kind});
   }
   std::sort(published.begin(), published.end(), [](const Track& a, const Track& b) { return a.id < b.id; });
 }

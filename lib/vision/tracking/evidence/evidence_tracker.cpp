@@ -320,14 +320,11 @@ void EvidenceTracker::publish(std::span<const Track> motion) {
              share_within(other.box(), t.box()) >= p_.body.nested;
     };
     if (t.holds_several && std::ranges::any_of(tracks_, stands_for)) continue;
-    const Box box = scaled(t.box(), across, down);
-    const double left = std::max(box.x, 0.0), top = std::max(box.y, 0.0);
-    const double right = std::min(box.right(), double(frame_.size.width));
-    const double bottom = std::min(box.bottom(), double(frame_.size.height));
-    if (right - left < 1 || bottom - top < 1) continue;
+    const Box box = inside(scaled(t.box(), across, down), frame_.size);
+    if (box.width < 1 || box.height < 1) continue;
     EvidenceResult r;
     r.id = t.id;
-    r.box = {left, top, right - left, bottom - top};
+    r.box = box;
     r.velocity = {t.velocity.x * t.height * across, t.velocity.y * t.height * down};
     r.age = t.age;
     r.confidence = std::clamp(t.evidence / p_.ceiling, 0.0, 1.0);
