@@ -145,7 +145,6 @@ void name(Numbers n, TrackParameters& p) {
          N(off_screen_speed),
          N(fragment_brake),
          N(confidence_time),
-         N(misfit_confidence),
          N(same_extent_least),
          N(same_extent_most),
          N(stride),

@@ -31,7 +31,7 @@ void TrackHypothesis::correct(const Region& region, bool alone, double seconds, 
   }
   uncut.width = std::max(uncut.width, width());
   uncut.height = std::max(uncut.height, height());
-  note_seen(region.confidence, how.fits, before, seconds);
+  note_seen(region.confidence, before, seconds);
 }
 
 // A group's kind is taken where the track's box is the group's and its regions have been groups for some time: bodies that
@@ -216,12 +216,11 @@ void TrackHypothesis::shrink_into(const Box& region) {
 }
 
 // size_before: S before the correction, frame pixels.
-void TrackHypothesis::note_seen(double seen_confidence, bool fits, double size_before, double seconds) {
+void TrackHypothesis::note_seen(double seen_confidence, double size_before, double seconds) {
   const TrackParameters& q = *parameters;
   unseen = 0;
   const double keep = std::exp(-seconds / q.confidence_time);
-  confidence =
-      keep * confidence + (1 - keep) * (0.5 + 0.5 * seen_confidence) * (fits ? 1 : q.misfit_confidence);
+  confidence = keep * confidence + (1 - keep) * (0.5 + 0.5 * seen_confidence);
   const double gone = std::hypot(x.position - travel.origin.x, y.position - travel.origin.y) / size_before;
   travel.most = std::max({travel.most, gone, approach(), stretch()});
   slow = speed() < q.stand_speed * size_before ? slow + seconds : 0;

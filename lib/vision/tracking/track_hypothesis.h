@@ -240,7 +240,7 @@ struct TrackHypothesis {
   void brake_fragment(const Comparison& how, double seconds);
   void shrink_into(const Box& region);
   void take_kind(RegionKind seen, bool alone, bool fits, double seconds);
-  void note_seen(double seen_confidence, bool fits, double size_before, double seconds);
+  void note_seen(double seen_confidence, double size_before, double seconds);
 };
 
 // The two have gone different ways for as long as both exist. Fragments of one object never do.

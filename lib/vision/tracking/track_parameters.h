@@ -42,9 +42,8 @@ struct TrackParameters {
   // S/s, the largest standard deviation of its velocity as it goes off-screen: the filter's is that of what a moving camera
   // follows. swept: docs/quality.md, .1 to 100. Guard: the IDF1 of bench-moving_window.
   double off_screen_speed = 0.3;
-  double fragment_brake = 0.4;     // s, the same when only a fragment of the object moves
-  double confidence_time = 0.5;    // s, time constant of the confidence
-  double misfit_confidence = 0.7;  // factor on the confidence of a region of another extent
+  double fragment_brake = 0.4;   // s, the same when only a fragment of the object moves
+  double confidence_time = 0.5;  // s, time constant of the confidence
 
   // Extents that agree, seen / expected.
   double same_extent_least = 0.65, same_extent_most = 1.5;
