@@ -145,7 +145,6 @@ const std::vector<Mechanism> kMechanisms{
      2,
      {"track.thing_group=1000000", "track.shared_group=1000000"}},
     {"stride", {}, 1, {"track.stride=0"}},
-    {"jumps", {"tracking/track_correction.cpp jumps"}, 3, {"track.jump=1000000"}},
     {"known_place", {"tracking/track_hypothesis.cpp stays"}, 1, {"track.settled=1000000"}},
     {"growth",
      {"tracking/track_correction.cpp follow_ends", "tracking/track_hypothesis.cpp approach",

@@ -90,7 +90,7 @@ bool TrackHypothesis::is_cut(double from, double to, double largest, int side) c
 //   cut by the picture's edge: yes, the object comes or goes.
 //   person-like: at once if the track's box was that of a group or of an unknown object, else after whole_misfit.
 //   larger: soon. Only a part was seen before, or the object runs off and its region stretches from the place where it
-//     stood, which stays foreground until the background model has learnt it. Later if the region jumped: it may be a group.
+//     stood, which stays foreground until the background model has learnt it.
 //   smaller: a fragment (an arm) of a standing object, as long as it stays in place. Yes if the object moved, if its
 //     extent was never well known, or if the fragment walks away on its own.
 bool TrackHypothesis::outgrown(const Region& region, bool cut, double seconds) {
@@ -99,28 +99,18 @@ bool TrackHypothesis::outgrown(const Region& region, bool cut, double seconds) {
   if (fit.misfit == 0) {
     fit.misfit_from = centre(seen);
     fit.was_still = slow > 0 || stands();
-    fit.jumped = false;
   }
-  fit.jumped = fit.jumped || jumps(seen, stands() ? seconds : seconds + unseen);
   fit.misfit += seconds;
   if (cut || match.reshaped) return true;
   if (is_person_like(region)) return kind != RegionKind::person_like || fit.misfit >= q.whole_misfit;
   const bool known = fit.time >= q.extent_known;
-  if (seen.area() > box().area())
-    return fit.misfit >= (known && fit.jumped ? q.jumped_misfit : q.growing_misfit);
+  if (seen.area() > box().area()) return fit.misfit >= q.growing_misfit;
   const Point to = centre(seen);
   const double gone = std::hypot(to.x - fit.misfit_from.x, to.y - fit.misfit_from.y);
   // While the camera moves a smaller region is believed in its second frame.
   const bool lasts =
       camera_moved ? fit.misfit >= q.panned_misfit && fit.misfit > seconds : fit.misfit >= q.shrinking_misfit;
   return lasts && (!fit.was_still || !known || gone > q.fragment_walk * size());
-}
-
-// A region that grows by so much from one frame to the next has met another object, or reveals more of its own.
-bool TrackHypothesis::jumps(const Box& seen, double seconds) const {
-  return std::max(
-             {last.x - seen.x, seen.right() - last.right(), last.y - seen.y, seen.bottom() - last.bottom()}) >
-         (parameters->jump + parameters->jump_speed * seconds) * size();
 }
 
 void TrackHypothesis::adopt(const Box& seen) {

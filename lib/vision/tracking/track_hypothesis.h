@@ -101,7 +101,6 @@ struct TrackHypothesis {
     double longest = 0;      // s, the largest `time` so far
     double misfit = 0;       // s since a region had its extent
     Point misfit_from;       // centre of the first region that had not, carried with the scene
-    bool jumped = false;     // the region has grown by a jump meanwhile
     bool was_still = false;  // the object stood, or nearly, when the misfit began
   };
   // Regions of several objects.
@@ -230,7 +229,6 @@ struct TrackHypothesis {
   Comparison compare(const Box& seen, bool alone, Size frame) const;
   bool is_cut(double from, double to, double largest, int side) const;
   bool outgrown(const Region& region, bool cut, double seconds);
-  bool jumps(const Box& seen, double seconds) const;
   void replace_extent(const Box& seen, bool cut);
   void move_to(const Point& found, double seconds);
   void move_by(const Comparison& how, double seconds, Size frame);

@@ -74,15 +74,12 @@ struct TrackParameters {
   double end_speed = 1.0;  // S/s of an end of the box; a faster one reveals more of a partly seen object
   double upright = 1.3;    // height / width, at least, of an object whose ends are followed
   double camera_still =
-      0.5 / 320;            // of the frame's width. derived: half an analysed pixel of registration error
-  double jump = 0.15;       // S by which an end that jumps goes at least from one frame to the next,
-  double jump_speed = 2.5;  // S/s, beside a runner's speed
+      0.5 / 320;  // of the frame's width. derived: half an analysed pixel of registration error
 
   // A region of another extent replaces the track's: after so many seconds ...
   double whole_misfit = 0.2;  // s, of a person-like region, where the track's was one as well
-  // s, of a larger region that was reached in steps. swept: docs/quality.md, .2 to .5; guard: bench-steady.
+  // s, of a larger region. swept: docs/quality.md, .2 to .5; guard: bench-steady.
   double growing_misfit = 0.25;
-  double jumped_misfit = 0.6;  // s, of a larger region that was reached by a jump
   // s, of a smaller region before a camera that stands. swept: docs/quality.md, .15 to .6.
   double shrinking_misfit = 0.4;
   // s, of a smaller region while the camera moves, and two frames at least: what is followed there turns and goes away
