@@ -138,12 +138,9 @@ void name(Numbers n, TrackParameters& p) {
          N(border_wander),
          N(fade),
          N(panned_widens),
-         N(stopped_wander),
-         N(stopped_uncertainty),
          N(coast_brake),
          N(off_screen_brake),
          N(off_screen_speed),
-         N(fragment_brake),
          N(confidence_time),
          N(same_extent_least),
          N(same_extent_most),
@@ -152,7 +149,6 @@ void name(Numbers n, TrackParameters& p) {
          N(gate),
          N(fragment_area),
          N(fragment_gate),
-         N(largest_ratio),
          N(size_cost),
          N(gate_cost),
          N(border),
@@ -164,22 +160,16 @@ void name(Numbers n, TrackParameters& p) {
          N(end_speed),
          N(upright),
          N(camera_still),
-         N(whole_misfit),
-         N(growing_misfit),
-         N(shrinking_misfit),
+         N(misfit),
          N(panned_misfit),
          N(extent_known),
+         N(fragment_walk),
          N(shared_group),
          N(thing_group),
-         N(fragment_walk),
          N(stand_speed),
          N(settled),
          N(appearance_time),
          N(appearance_frames),
-         N(recent_time),
-         N(freeze),
-         N(relearn),
-         N(changed),
          N(found_noise),
          N(found_brake),
          N(apart),
@@ -188,12 +178,10 @@ void name(Numbers n, TrackParameters& p) {
 }
 
 void name(Numbers n, LifeCycle::Parameters& p) {
-  n.add({N(least_travel),     N(least_hits), N(slow_least_hits), N(slow_confirm),
-         N(confirm_slack),    N(hit_share),  N(tentative_coast), N(coast_share),
-         N(border_coast),     N(proven),     N(certain),         N(sliver),
-         N(occluded_coast),   N(still),      N(fitted),          N(stop_travel),
-         N(remnant),          N(seen),       N(covered),         N(off_screen_fit),
-         N(off_screen_travel)});
+  n.add({N(least_travel), N(least_hits),      N(slow_least_hits), N(slow_confirm),   N(confirm_slack),
+         N(hit_share),    N(tentative_coast), N(coast_share),     N(border_coast),   N(certain),
+         N(sliver),       N(still),           N(fitted),          N(stop_travel),    N(seen),
+         N(remnant),      N(covered),         N(occluded_coast),  N(off_screen_fit), N(off_screen_travel)});
 }
 
 void name(Numbers n, DataAssociation::Parameters& p) {
@@ -201,10 +189,9 @@ void name(Numbers n, DataAssociation::Parameters& p) {
          N(speed_slack),     N(leap),          N(usual_change),  N(appearance_cost),
          N(known_cost),      N(known_time),    N(sudden_change), N(off_screen_change),
          N(larger),          N(inside),        N(crowd),         N(occluded_overlap),
-         N(fragment_inside), N(fragment_most), N(completed),     N(merge_time),
-         N(filled),          N(part_area),     N(part_inside),   N(upright),
-         N(alike),           N(common_height), N(gap),           N(common_rows),
-         N(common_columns),  N(slender)});
+         N(fragment_inside), N(merge_time),    N(part_area),     N(part_inside),
+         N(upright),         N(common_height), N(common_rows),   N(common_columns),
+         N(slender)});
 }
 
 void name(Numbers n, RegionAppearances::Parameters& p) {
@@ -213,8 +200,7 @@ void name(Numbers n, RegionAppearances::Parameters& p) {
 }
 
 void name(Numbers n, AppearanceParameters& p) {
-  n.add({N(dark), N(darkest), N(brightest), N(least_pairs), N(keep), N(rebin), N(least_filled),
-         N(least_samples)});
+  n.add({N(dark), N(darkest), N(brightest), N(least_pairs), N(keep), N(rebin)});
 }
 
 #undef D

@@ -342,8 +342,6 @@ START_TEST(tracks_in_view_are_published_while_their_place_is_certain) {
   ck_assert(!coasted([](TrackHypothesis& t) { t.x.pp = 16.1 * 16.1; }));
   ck_assert(coasted([](TrackHypothesis& t) { t.x.position = 31; }));
   ck_assert(!coasted([](TrackHypothesis& t) { t.x.position = 29; }));  // its box begins in .1 S
-  ck_assert(coasted([](TrackHypothesis& t) { t.age = 0.61; }));        // 3 x .2 s
-  ck_assert(!coasted([](TrackHypothesis& t) { t.age = 0.59; }));
   const auto at_edge = [](double left, double right, double largest) {
     return published(track(Confirmed{}), [=](TrackHypothesis& t) {
       t.x.position = (left + right) / 2;

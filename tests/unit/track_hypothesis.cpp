@@ -225,7 +225,7 @@ START_TEST(a_person_s_own_region_replaces_a_group_s_extent_at_once_and_a_person_
     track.correct(person, true, 0.04, kFrame);
     const bool adopted = std::abs(track.width() - 40) < 1;
     ck_assert(adopted == (before != RegionKind::person_like));
-    for (int k = 0; k < 5; ++k) track.correct(person, true, 0.04, kFrame);
+    for (int k = 0; k < 8; ++k) track.correct(person, true, 0.04, kFrame);
     ck_assert_double_eq_tol(track.width(), 40, 1);
   }
 }
@@ -310,8 +310,8 @@ static int frames_until_shrunk(double seconds, bool camera_moves) {
 
 START_TEST(a_moving_camera_s_track_shrinks_in_its_second_frame_of_a_twentieth_second_at_least) {
   ck_assert_int_eq(frames_until_shrunk(0.0334, true), 2);
-  ck_assert_int_eq(frames_until_shrunk(0.0334, false), 12);  // .4 s before a camera that stands
-  ck_assert_int_eq(frames_until_shrunk(0.1001, true), 2);    // one frame alone is not believed
+  ck_assert_int_eq(frames_until_shrunk(0.0334, false), 9);  // .3 s before a camera that stands
+  ck_assert_int_eq(frames_until_shrunk(0.1001, true), 2);   // one frame alone is not believed
   ck_assert_int_eq(frames_until_shrunk(0.01001, true), 5);
 }
 END_TEST
@@ -426,57 +426,16 @@ START_TEST(each_transition_leads_to_its_state) {
 }
 END_TEST
 
-// Learning goes on half a second after contact; a changed appearance is learnt after four.
-START_TEST(the_appearance_model_is_frozen_after_contact) {
-  constexpr double kStep = 0.1;  // s
-  const auto looks = [](int bin) {
-    AppearanceModel look;
-    for (auto& band : look.share) band[bin] = AppearanceModel::kAll;
-    return look;
-  };
-  const auto seen = [](TrackHypothesis& track, const AppearanceModel& look, int frames) {
-    for (int k = 0; k < frames; ++k) {
-      track.predict(kStep);
-      track.remember(look, kStep, true);
-    }
-  };
-  TrackHypothesis slowly = walker(200, 150), suddenly = walker(400, 150);
-  for (TrackHypothesis* track : {&slowly, &suddenly}) {
-    seen(*track, looks(1), 50);
-    track->touch();
-  }
-  AppearanceModel a_little = looks(1);
-  for (auto& band : a_little.share) {
-    band[1] -= AppearanceModel::kAll / 5;
-    band[2] += AppearanceModel::kAll / 5;
-  }
-  seen(slowly, a_little, 4);
-  ck_assert_double_eq(appearance_distance(slowly.appearance.model, looks(1)), 0);
-  ck_assert_double_eq_tol(slowly.appearance.learnt, 50 * kStep, 1e-9);
-  seen(slowly, a_little, 16);
-  ck_assert_double_gt(slowly.appearance.learnt, 64 * kStep);
-  ck_assert_double_gt(appearance_distance(slowly.appearance.model, looks(1)), 0.07);
-  seen(suddenly, looks(6), 39);
-  ck_assert_double_eq(appearance_distance(suddenly.appearance.model, looks(1)), 0);
-  seen(suddenly, looks(6), 60);
-  ck_assert_double_lt(appearance_distance(suddenly.appearance.model, looks(6)), 0.3);
-}
-END_TEST
-
 int main() {
   return cerberus::tests::run_suite(
       "track_hypothesis",
-      {the_appearance_model_is_frozen_after_contact,
-       a_moving_camera_s_track_shrinks_in_its_second_frame_of_a_twentieth_second_at_least,
+      {a_moving_camera_s_track_shrinks_in_its_second_frame_of_a_twentieth_second_at_least,
        before_a_moving_camera_a_width_that_grows_is_followed_faster,
        before_a_moving_camera_a_track_s_velocity_is_less_certain,
        the_velocity_of_what_is_faster_than_a_jogger_is_less_certain,
-       after_a_leap_the_velocity_is_that_of_the_leap,
-       a_track_becomes_as_wide_as_somebody_in_mid_stride,
-       a_region_that_fits_exactly_is_at_no_distance,
-       each_transition_leads_to_its_state,
-       a_zoom_scales_all_of_its_lengths,
-       what_the_edge_cuts_or_another_shares_is_not_seen_whole,
+       after_a_leap_the_velocity_is_that_of_the_leap, a_track_becomes_as_wide_as_somebody_in_mid_stride,
+       a_region_that_fits_exactly_is_at_no_distance, each_transition_leads_to_its_state,
+       a_zoom_scales_all_of_its_lengths, what_the_edge_cuts_or_another_shares_is_not_seen_whole,
        a_camera_that_rolls_turns_the_velocity,
        a_fragment_replaces_the_track_if_it_leaves_its_place_in_the_scene,
        towards_the_picture_s_middle_an_off_screen_track_shrinks_as_a_pinhole_projects_it,

@@ -242,19 +242,6 @@ START_TEST(a_track_unseen_at_the_edge_is_unpublished_and_keeps_its_identity) {
 }
 END_TEST
 
-START_TEST(a_track_seen_for_a_moment_only_is_not_coasted) {
-  for (const int looks : {4, 10}) {
-    Tracker tracker;
-    for (int k = 0; k <= looks; ++k) {
-      const Region seen = person(100 + 5 * k, 240);
-      const auto tracks = tracker.update({&seen, k < looks ? 1u : 0u}, {}, 0.1, kFrame);
-      if (k == looks - 1) ck_assert_uint_eq(tracks.size(), 1);
-      if (k == looks) ck_assert_uint_eq(tracks.size(), looks < 7 ? 0 : 1);
-    }
-  }
-}
-END_TEST
-
 START_TEST(a_sliver_beside_an_unseen_person_is_another_object) {
   Tracker tracker;
   double x = 100;
@@ -440,7 +427,6 @@ int main() {
                               a_standing_person_s_moving_arm_does_not_make_the_person_small,
                               a_track_that_leaves_the_picture_ends_within_half_a_second,
                               a_track_unseen_at_the_edge_is_unpublished_and_keeps_its_identity,
-                              a_track_seen_for_a_moment_only_is_not_coasted,
                               a_sliver_beside_an_unseen_person_is_another_object,
                               a_fragment_corrects_the_position_less_than_a_whole_person,
                               an_unknown_time_is_taken_as_the_last_known_one,

@@ -87,7 +87,6 @@ void AppearanceModel::learn(const AppearanceModel& seen, double weight) {
 }
 
 AppearanceModel appearance_of(const Sight& sight, const BrightnessLevel& level, const Box& box, int samples) {
-  const AppearanceParameters& q = level.parameters();
   AppearanceModel look;
   const int x0 = std::max(0, static_cast<int>(std::lround(box.x)));
   const int x1 = std::min(sight.luma.width, static_cast<int>(std::lround(box.right())));
@@ -114,9 +113,7 @@ AppearanceModel appearance_of(const Sight& sight, const BrightnessLevel& level, 
         ++count;
       }
     }
-    const double all =
-        whole / AppearanceModel::kBands / (step * step);  // samples of a band that is all foreground
-    if (count < static_cast<std::uint32_t>(q.least_samples) || count < q.least_filled * all) continue;
+    if (count == 0) continue;
     for (int i = 0; i < AppearanceModel::kBins; ++i)
       look.share[b][i] =
           static_cast<std::uint16_t>(counts[i] * std::uint64_t{AppearanceModel::kAll} / (count * kShares));

@@ -25,8 +25,6 @@ struct AppearanceParameters {
   double keep =
       1 - 1.0 / 2000;   // of the level, each frame: small errors decay. derived: models live for seconds
   double rebin = 0.02;  // log2 by which the level changes before the bins are computed again
-  double least_filled = 0.08;  // of a band's samples that are foreground: fewer are a rim
-  int least_samples = 4;       // foreground samples of a band
 };
 
 // The analysed picture and its foreground mask (not 0), of one size. appearance_of() reads all of a box where the mask

@@ -30,15 +30,11 @@ DataAssociation::Turn DataAssociation::turn_of(const TrackHypothesis& t) {
   }
 }
 
-// Two upright boxes of one size with a clear gap between them, as tall as the track, are two persons who walk side by
-// side, not fragments of one.
+// Two upright boxes beside each other, nearly as tall as the track, are two persons who walk side by side, not fragments of
+// one.
 bool DataAssociation::side_by_side(const Box& a, const Box& b, const Box& expected) const {
-  const Parameters& q = parameters_;
-  const auto alike = [&](double p, double r) { return std::min(p, r) > q.alike * std::max(p, r); };
-  const double clear = std::max(a.x, b.x) - std::min(a.right(), b.right());
   const double low = std::max(a.y, b.y), high = std::min(a.bottom(), b.bottom());
-  return is_upright(a) && is_upright(b) && alike(a.width, b.width) && alike(a.height, b.height) &&
-         high - low > q.common_height * expected.height && clear > q.gap * std::min(a.width, b.width);
+  return is_upright(a) && is_upright(b) && high - low > parameters_.common_height * expected.height;
 }
 
 // Are they fragments, one above the other, of the person whose region this is? A person who walks straight up or down
@@ -180,9 +176,7 @@ void DataAssociation::gather_fragments() {
       if (turn_of(tracks_[i]) != Turn::in_view) continue;
       if (match.region >= 0 && is_person_like(regions_[match.region])) continue;
       const Box expected = tracks_[i].box();
-      if (overlap_area(expected, fragment) < q.fragment_inside * fragment.area() ||
-          fragment.area() > q.fragment_most * expected.area())
-        continue;
+      if (overlap_area(expected, fragment) < q.fragment_inside * fragment.area()) continue;
       if (match.region < 0) {
         match.region = static_cast<int>(j);
         owner_[j] = static_cast<int>(i);
@@ -194,11 +188,8 @@ void DataAssociation::gather_fragments() {
         break;
       }
       fragment_[j] = 1;
-      const Box both = bounding(main.box, fragment);
-      if (both.width < q.completed * expected.width && both.height < q.completed * expected.height) {
-        main.box = both;
-        appearances_->recompute(match.region, both);
-      }
+      main.box = bounding(main.box, fragment);
+      appearances_->recompute(match.region, main.box);
       break;
     }
   }
@@ -239,37 +230,23 @@ void DataAssociation::share_regions() {
   }
 }
 
-// Is the track a fragment of the oldest one in the region? above: it is, one lies above the other.
-bool DataAssociation::merges(const TrackHypothesis& t, const TrackHypothesis& oldest, const Box& region,
-                             double filled, bool& above) const {
-  above = false;
-  if (t.shared.time < parameters_.merge_time) return false;
-  if (one_above_another(t.box(), oldest.box(), region)) return above = true;
-  if (went_apart(t, oldest)) return false;
-  if (is_part(t.box(), oldest.box())) return true;  // a part does not look like the whole
-  return filled < parameters_.filled * region.area() && !look_different(t, oldest);
-}
-
-// Tracks that together fill only a small part of the blob that they share and have moved as one are fragments of one
+// Tracks in one region, one above the other or a small one in a large one, that have moved as one are fragments of one
 // object: the oldest becomes that object and the others end.
 void DataAssociation::merge_fragments() {
   for (std::size_t j = 0; j < regions_.size(); ++j) {
-    const Box& region = regions_[j].box;
     const auto shares = [&](std::size_t i) {
       return matches_[i].region == static_cast<int>(j) && !matches_[i].occluded;
     };
-    double filled = 0;
     int count = 0;
     std::size_t oldest = 0;
-    for (std::size_t i = 0; i < tracks_.size(); ++i) {
-      if (!shares(i)) continue;
-      filled += overlap_area(tracks_[i].box(), region);
-      if (count++ == 0 || tracks_[i].age > tracks_[oldest].age) oldest = i;
-    }
+    for (std::size_t i = 0; i < tracks_.size(); ++i)
+      if (shares(i) && (count++ == 0 || tracks_[i].age > tracks_[oldest].age)) oldest = i;
     const int all = count;
     for (std::size_t i = 0; i < tracks_.size() && all > 1; ++i) {
-      bool above = false;
-      if (i == oldest || !shares(i) || !merges(tracks_[i], tracks_[oldest], region, filled, above)) continue;
+      const TrackHypothesis &t = tracks_[i], &whole = tracks_[oldest];
+      if (i == oldest || !shares(i) || t.shared.time < parameters_.merge_time) continue;
+      const bool above = one_above_another(t.box(), whole.box(), regions_[j].box);
+      if (!above && (went_apart(t, whole) || !is_part(t.box(), whole.box()))) continue;
       matches_[i].merged = true;
       if (above) matches_[oldest].reshaped = true;
       --count;

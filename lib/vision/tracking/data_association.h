@@ -57,18 +57,13 @@ class DataAssociation {
 
     // Fragments.
     double fragment_inside = 0.6;  // of the fragment's area that lies in the track's box
-    double fragment_most = 0.7;    // of the track's area
-    double completed = 1.25;       // times the track's extent that a completed region has at most
     double merge_time = 0.3;       // s in one region before tracks are merged
-    double filled = 0.4;     // of the region that its tracks fill: below it they are fragments of one object
-    double part_area = 0.2;  // of the other's area: a smaller track is a part of it,
-    double part_inside = 0.6;  // if so much of it lies inside
+    double part_area = 0.2;        // of the other's area: a smaller track is a part of it,
+    double part_inside = 0.6;      // if so much of it lies inside
 
     // Two persons side by side, not two fragments of one.
     double upright = 1.3;        // height / width
-    double alike = 0.6;          // ratio of their widths and of their heights
     double common_height = 0.6;  // rows in common, of the track's height
-    double gap = 0.3;            // columns between them, of the narrower one's width
 
     // Two fragments of one person, one above the other.
     double common_rows = 0.3;     // of the lower one's height, at most
@@ -130,11 +125,9 @@ class DataAssociation {
   void share_regions();
   bool occludes(const TrackHypothesis& front, const TrackHypothesis& track, const Box& region) const;
   void merge_fragments();
-  bool merges(const TrackHypothesis& track, const TrackHypothesis& oldest, const Box& region, double filled,
-              bool& above) const;
-  bool side_by_side(const Box& a, const Box& b, const Box& expected) const;
-  bool one_above_another(const Box& a, const Box& b, const Box& region) const;
   bool is_part(const Box& part, const Box& whole) const;
+  bool one_above_another(const Box& a, const Box& b, const Box& region) const;
+  bool side_by_side(const Box& a, const Box& b, const Box& expected) const;
   bool is_upright(const Box& box) const { return box.height > parameters_.upright * box.width; }
 
   Parameters parameters_;

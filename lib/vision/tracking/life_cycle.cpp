@@ -226,8 +226,7 @@ std::optional<TrackState> LifeCycle::published(const TrackHypothesis& t) const {
   if (t.is(TrackPhase::stopped)) return TrackState::stopped;
   // A coasted track: while its position is certain; away from the picture's edge, where it probably has left; if it was
   // seen for long enough not to be noise; and if it is not a piece of a person, who may have left it behind.
-  if (t.kind == RegionKind::part || std::sqrt(t.x.pp) > q.certain * t.width() || t.at_border(frame_.size) ||
-      t.seen_for() < q.proven * options_.confirm_time)
+  if (t.kind == RegionKind::part || std::sqrt(t.x.pp) > q.certain * t.width() || t.at_border(frame_.size))
     return {};
   return TrackState::coasted;
 }

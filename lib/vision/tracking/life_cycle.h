@@ -45,7 +45,6 @@ class LifeCycle {
     // Coasting.
     double coast_share = 0.5;   // of the time for which the object was seen
     double border_coast = 0.3;  // of the coast time, at the picture's edge
-    double proven = 3;     // times confirm-time for which a coasted track was seen before it is published
     double certain = 0.4;  // of the box's width: standard deviation up to which a coasted track is published
     // Of the largest height that it had: what the picture's left or right edge cuts to this width is mostly outside, and
     // unpublished. derived: half of the width of a walking person. swept: MOTA on TUD-Campus is .21 without, .26 to .27

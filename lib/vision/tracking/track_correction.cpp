@@ -16,10 +16,7 @@ void TrackHypothesis::correct(const Region& region, bool alone, double seconds, 
     move_to(*found, seconds);
   } else {
     move_by(how, seconds, frame);
-    if (alone && how.fits)
-      refine_extent(seen, how, seconds, frame);
-    else if (alone && how.smaller)
-      brake_fragment(how, seconds);
+    if (alone && how.fits) refine_extent(seen, how, seconds, frame);
   }
   if (alone) last = seen;
   take_kind(region.kind, alone, how.fits, seconds);
@@ -60,7 +57,6 @@ TrackHypothesis::Comparison TrackHypothesis::compare(const Box& seen, bool alone
       seen.width < parameters->stride * std::min(seen.height, b.height))
     c.x = {centre(seen).x - centre(b).x, true};
   c.fits = c.x.same_extent && c.y.same_extent;
-  c.smaller = seen.area() < b.area();
   c.within_x = seen.x >= b.x && seen.right() <= b.right();
   c.within_y = seen.y >= b.y && seen.bottom() <= b.bottom();
   // Where the edge cuts a region off it changes because the object comes or goes, unless the object is seen to stand
@@ -74,7 +70,7 @@ TrackHypothesis::Comparison TrackHypothesis::compare(const Box& seen, bool alone
     c.cut_y = at_end;
     return c;
   }
-  const bool fragment = !c.fits && c.smaller;
+  const bool fragment = !c.fits && seen.area() < b.area();
   if (c.within_x || fragment) c.x.distance = 0;
   if (c.within_y || fragment) c.y.distance = 0;
   return c;
@@ -88,11 +84,11 @@ bool TrackHypothesis::is_cut(double from, double to, double largest, int side) c
 
 // One object, one region, extents that disagree: does the region's extent replace the track's?
 //   cut by the picture's edge: yes, the object comes or goes.
-//   person-like: at once if the track's box was that of a group or of an unknown object, else after whole_misfit.
-//   larger: soon. Only a part was seen before, or the object runs off and its region stretches from the place where it
-//     stood, which stays foreground until the background model has learnt it.
-//   smaller: a fragment (an arm) of a standing object, as long as it stays in place. Yes if the object moved, if its
-//     extent was never well known, or if the fragment walks away on its own.
+//   person-like: at once if the track's box was that of a group or of an unknown object, else when it lasts.
+//   larger: when it lasts. Only a part was seen before, or the object runs off and its region stretches from the place
+//     where it stood, which stays foreground until the background model has learnt it.
+//   smaller: a fragment (an arm) of a standing object, as long as it stays in place. When it lasts if the object moved, if
+//     its extent was never well known, or if the fragment walks away on its own.
 bool TrackHypothesis::outgrown(const Region& region, bool cut, double seconds) {
   const TrackParameters& q = *parameters;
   const Box& seen = region.box;
@@ -102,15 +98,13 @@ bool TrackHypothesis::outgrown(const Region& region, bool cut, double seconds) {
   }
   fit.misfit += seconds;
   if (cut || match.reshaped) return true;
-  if (is_person_like(region)) return kind != RegionKind::person_like || fit.misfit >= q.whole_misfit;
-  const bool known = fit.time >= q.extent_known;
-  if (seen.area() > box().area()) return fit.misfit >= q.growing_misfit;
-  const Point to = centre(seen);
-  const double gone = std::hypot(to.x - fit.misfit_from.x, to.y - fit.misfit_from.y);
+  if (is_person_like(region)) return kind != RegionKind::person_like || fit.misfit >= q.misfit;
+  if (seen.area() > box().area()) return fit.misfit >= q.misfit;
   // While the camera moves a smaller region is believed in its second frame.
-  const bool lasts =
-      camera_moved ? fit.misfit >= q.panned_misfit && fit.misfit > seconds : fit.misfit >= q.shrinking_misfit;
-  return lasts && (!fit.was_still || !known || gone > q.fragment_walk * size());
+  if (camera_moved ? fit.misfit < q.panned_misfit || fit.misfit <= seconds : fit.misfit < q.misfit)
+    return false;
+  const double gone = std::hypot(centre(seen).x - fit.misfit_from.x, centre(seen).y - fit.misfit_from.y);
+  return !fit.was_still || fit.time < q.extent_known || gone > q.fragment_walk * size();
 }
 
 void TrackHypothesis::adopt(const Box& seen) {
@@ -190,13 +184,6 @@ void TrackHypothesis::follow_ends(const Box& seen, double seconds, Size frame) {
   };
   follow(travel.top_rise, last.y - seen.y);
   follow(travel.bottom_drop, seen.bottom() - last.bottom());
-}
-
-// A fragment of the object says little of its velocity.
-void TrackHypothesis::brake_fragment(const Comparison& how, double seconds) {
-  const double brake = std::exp(-seconds / parameters->fragment_brake);
-  if (!how.x.same_extent) x.velocity *= brake;
-  if (!how.y.same_extent) y.velocity *= brake;
 }
 
 // A track is not larger than a region that it shares, if the region holds all of the object.

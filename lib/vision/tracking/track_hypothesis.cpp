@@ -73,9 +73,6 @@ bool TrackHypothesis::predict(double seconds, bool camera_moves) {
   camera_moved = camera_moves;
   if (stands()) {
     x.velocity = y.velocity = 0;
-    for (MovingValue* a : {&x, &y})
-      a->pp = std::min(a->pp + square(q.stopped_wander * s) * seconds,
-                       std::max(square(q.stopped_uncertainty * s), a->pp));
   } else if (!walked_out()) {
     const double acceleration = camera_moves ? q.panned_acceleration : q.acceleration;
     const double faster = std::max(1.0, speed() / (q.fast * s));
@@ -85,7 +82,6 @@ bool TrackHypothesis::predict(double seconds, bool camera_moves) {
   age += seconds;
   if (auto* data = std::get_if<Tentative>(&life)) ++data->frames;
   match = {};
-  appearance.since_contact += seconds;
   uncut.since += seconds;
   return std::isfinite(x.position) && std::isfinite(y.position);
 }
@@ -229,7 +225,6 @@ double TrackHypothesis::distance(const Box& seen, Size frame) const {
   const double gate = fragment ? q.fragment_gate : q.gate;
   if (d2 > square(gate)) return -1;
   const double sizes = std::abs(std::log(seen.width / b.width)) + std::abs(std::log(seen.height / b.height));
-  if (sizes > 2 * std::log(q.largest_ratio)) return -1;
   const Point c = centre(seen);
   // Rounding makes the overlap of equal boxes more than 1.
   return std::max(0.0, 1 - intersection_over_union(b, seen)) + q.size_cost * sizes +
@@ -253,30 +248,15 @@ bool TrackHypothesis::has_appearance() const {
   return appearance.frames >= parameters->appearance_frames;
 }
 
-void TrackHypothesis::touch() {
-  appearance.since_contact = 0;
-  appearance.recent_frames = 0;
-}
-
 void TrackHypothesis::remember(const AppearanceModel& seen, double seconds, bool isolated) {
   const TrackParameters& q = *parameters;
   Appearance& a = appearance;
   if (a.frames > 0) a.change = std::max(0.0, appearance_distance(a.model, seen));
-  if (!isolated) {
-    touch();
-    return;
-  }
-  const auto learn = [&](AppearanceModel& model, int& count, double time) {
-    if (++count == 1)
-      model = seen;
-    else
-      model.learn(seen, std::max(1.0 / count, 1 - std::exp(-seconds / time)));
-  };
-  learn(a.recent, a.recent_frames, q.recent_time);
-  const bool frozen = a.since_contact < q.freeze ||
-                      (a.since_contact < q.relearn && appearance_distance(a.model, a.recent) > q.changed);
-  if (has_appearance() && frozen) return;
-  learn(a.model, a.frames, q.appearance_time);
+  if (!isolated) return;
+  if (++a.frames == 1)
+    a.model = seen;
+  else
+    a.model.learn(seen, std::max(1.0 / a.frames, 1 - std::exp(-seconds / q.appearance_time)));
   a.learnt += seconds;
 }
 

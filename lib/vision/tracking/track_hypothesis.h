@@ -109,13 +109,10 @@ struct TrackHypothesis {
     double unlocated = 0;  // s in shared regions without being located there
   };
   struct Appearance {
-    AppearanceModel model;       // learnt while the object is alone
-    int frames = 0;              // in which it was learnt
-    double learnt = 0;           // s of these
-    double change = 0;           // appearance distance of the last region to the model
-    AppearanceModel recent;      // since the last contact with another track
-    int recent_frames = 0;       // in which that was learnt
-    double since_contact = 1e9;  // s
+    AppearanceModel model;  // learnt while the object is alone
+    int frames = 0;         // in which it was learnt
+    double learnt = 0;      // s of these
+    double change = 0;      // appearance distance of the last region to the model
   };
 
   const TrackParameters* parameters = &kTrackParameters;
@@ -200,10 +197,8 @@ struct TrackHypothesis {
 
   // The object stood, and its place still differs from what was there before: it is there, whatever moves.
   bool stays() const;
-  // Learns the appearance of a region of its own extent. isolated: no other track covers a part of the region.
+  // Learns the appearance of a region of its own extent, where no other track covers a part of the region (isolated).
   void remember(const AppearanceModel& seen, double seconds, bool isolated);
-  // Contact: another track shares the region, or covers a part of it.
-  void touch();
   // Returns whether the appearance model distinguishes the object from others.
   bool has_appearance() const;
 
@@ -212,7 +207,6 @@ struct TrackHypothesis {
   struct Comparison {
     Residual x, y;
     bool fits = false;                        // both extents agree
-    bool smaller = false;                     // in area
     bool within_x = false, within_y = false;  // it lies in the expected box
     bool cut_x = false, cut_y = false;        // by the picture's edge: it changes as the object comes or goes
     bool at_edge = false;  // the picture's edge cuts it, whether it comes, goes or stands there
@@ -235,7 +229,6 @@ struct TrackHypothesis {
   void refine_extent(const Box& seen, const Comparison& how, double seconds, Size frame);
   void resize(SlowValue& extent, double seen, bool is_cut, double seconds);
   void follow_ends(const Box& seen, double seconds, Size frame);
-  void brake_fragment(const Comparison& how, double seconds);
   void shrink_into(const Box& region);
   void take_kind(RegionKind seen, bool alone, bool fits, double seconds);
   void note_seen(double seen_confidence, double size_before, double seconds);

@@ -125,8 +125,6 @@ void Tracker::State::correct(TrackHypothesis& t) {
   t.shared.time = alone ? 0 : t.shared.time + seconds;
   if (fits && appearances.of(j).known())
     t.remember(appearances.of(j), seconds, !association.crowded(tracks, t, region.box));
-  else if (!alone)
-    t.touch();
 }
 
 // The background model has not absorbed an object that has only just begun to stand. fits: the region is all of it, and of
