@@ -127,7 +127,7 @@ const std::vector<Mechanism> kMechanisms{
     {"occlusion", {"tracking/data_association.cpp occludes"}, 2, {"association.occluded_overlap=2"}},
     {"merge_fragments",
      {"tracking/data_association.cpp merge_fragments", "tracking/data_association.cpp is_part"},
-     3,
+     4,
      {"association.merge_time=1000000"}},
     {"stopped",
      {"tracking/life_cycle.cpp has_stopped", "tracking/life_cycle.cpp advance_stopped"},

@@ -185,13 +185,13 @@ void name(Numbers n, LifeCycle::Parameters& p) {
 }
 
 void name(Numbers n, DataAssociation::Parameters& p) {
-  n.add({N(unmatched),       N(worst),         N(shared),        N(returned_area),
-         N(speed_slack),     N(leap),          N(usual_change),  N(appearance_cost),
-         N(known_cost),      N(known_time),    N(sudden_change), N(off_screen_change),
-         N(larger),          N(inside),        N(crowd),         N(occluded_overlap),
-         N(fragment_inside), N(merge_time),    N(part_area),     N(part_inside),
-         N(upright),         N(common_height), N(common_rows),   N(common_columns),
-         N(slender)});
+  n.add({N(unmatched),       N(worst),      N(shared),        N(returned_area),
+         N(speed_slack),     N(leap),       N(usual_change),  N(appearance_cost),
+         N(known_cost),      N(known_time), N(sudden_change), N(off_screen_change),
+         N(larger),          N(inside),     N(crowd),         N(occluded_overlap),
+         N(fragment_inside), N(merge_time), N(filled),        N(part_area),
+         N(part_inside),     N(upright),    N(common_height), N(common_rows),
+         N(common_columns),  N(slender)});
 }
 
 void name(Numbers n, RegionAppearances::Parameters& p) {

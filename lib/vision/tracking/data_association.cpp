@@ -230,23 +230,30 @@ void DataAssociation::share_regions() {
   }
 }
 
-// Tracks in one region, one above the other or a small one in a large one, that have moved as one are fragments of one
-// object: the oldest becomes that object and the others end.
+// Tracks in one region that have moved as one are fragments of one object where one lies above the other, where one is a
+// small part of the other, and where together they fill only a small part of the region: the oldest becomes that object and
+// the others end.
 void DataAssociation::merge_fragments() {
   for (std::size_t j = 0; j < regions_.size(); ++j) {
     const auto shares = [&](std::size_t i) {
       return matches_[i].region == static_cast<int>(j) && !matches_[i].occluded;
     };
+    double filled = 0;
     int count = 0;
     std::size_t oldest = 0;
-    for (std::size_t i = 0; i < tracks_.size(); ++i)
-      if (shares(i) && (count++ == 0 || tracks_[i].age > tracks_[oldest].age)) oldest = i;
+    for (std::size_t i = 0; i < tracks_.size(); ++i) {
+      if (!shares(i)) continue;
+      filled += overlap_area(tracks_[i].box(), regions_[j].box);
+      if (count++ == 0 || tracks_[i].age > tracks_[oldest].age) oldest = i;
+    }
+    const bool hollow = filled < parameters_.filled * regions_[j].box.area();
     const int all = count;
     for (std::size_t i = 0; i < tracks_.size() && all > 1; ++i) {
       const TrackHypothesis &t = tracks_[i], &whole = tracks_[oldest];
       if (i == oldest || !shares(i) || t.shared.time < parameters_.merge_time) continue;
       const bool above = one_above_another(t.box(), whole.box(), regions_[j].box);
-      if (!above && (went_apart(t, whole) || !is_part(t.box(), whole.box()))) continue;
+      const bool fragment = is_part(t.box(), whole.box()) || (hollow && !look_different(t, whole));
+      if (!above && (went_apart(t, whole) || !fragment)) continue;
       matches_[i].merged = true;
       if (above) matches_[oldest].reshaped = true;
       --count;

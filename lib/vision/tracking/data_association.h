@@ -58,8 +58,9 @@ class DataAssociation {
     // Fragments.
     double fragment_inside = 0.6;  // of the fragment's area that lies in the track's box
     double merge_time = 0.3;       // s in one region before tracks are merged
-    double part_area = 0.2;        // of the other's area: a smaller track is a part of it,
-    double part_inside = 0.6;      // if so much of it lies inside
+    double filled = 0.4;     // of the region that its tracks fill: below it they are fragments of one object
+    double part_area = 0.2;  // of the other's area: a smaller track is a part of it,
+    double part_inside = 0.6;  // if so much of it lies inside
 
     // Two persons side by side, not two fragments of one.
     double upright = 1.3;        // height / width
