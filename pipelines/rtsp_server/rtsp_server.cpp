@@ -8,6 +8,7 @@
 #include "publish/streams/payloaders.h"
 #include "rtsp_server/client_connection.h"
 #include "rtsp_server/limited_auth.h"
+#include "rtsp_server/whole_pictures.h"
 
 namespace cerberus::rtsp {
 namespace {
@@ -23,6 +24,11 @@ constexpr int kEndingTries = 40;       // looks: .2 s, in which the caller's mai
 
 std::string source_name(std::size_t stream) {
   return "cerberus_source_" + std::to_string(stream);
+}
+
+// As gst-rtsp-server looks for it.
+std::string payloader_name(std::size_t stream) {
+  return "pay" + std::to_string(stream);
 }
 
 // The sources of one media: fed until the media ends.
@@ -68,6 +74,8 @@ void on_media_configure(GstRTSPMediaFactory*, GstRTSPMedia* media, gpointer data
     feed->sources.emplace_back(streams[k], GST_APP_SRC(source));
     g_autoptr(GstPad) pad = gst_element_get_static_pad(source, "src");
     gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_EVENT_UPSTREAM, on_upstream_event, streams[k].get(), nullptr);
+    g_autoptr(GstElement) payloader = gst_bin_get_by_name(GST_BIN(element), payloader_name(k).c_str());
+    send_whole_pictures(payloader);
     streams[k]->add(GST_APP_SRC(source));
   }
   g_object_set_data_full(G_OBJECT(media), kFeed, feed,
@@ -222,7 +230,7 @@ std::string RtspServer::make_line(const std::vector<std::shared_ptr<EncodedStrea
     if (!found) return "the element " + element + " is missing, which sends " + kind;
     // The queues of the sources are limited by EncodedStream.
     line += "appsrc name=" + source_name(k) + " is-live=true format=time max-bytes=0 ! " + payloader +
-            " name=pay" + std::to_string(k) + " pt=" + std::to_string(96 + k) + " ";
+            " name=" + payloader_name(k) + " pt=" + std::to_string(96 + k) + " ";
     kinds += (kinds.empty() ? "" : " + ") + kind;
   }
   return {};

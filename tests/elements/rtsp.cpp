@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "rtsp_server/rtsp_server.h"
+#include "rtsp_server/whole_pictures.h"
 #include "support.h"
 #include "support/temporary_file.h"
 
@@ -571,6 +572,78 @@ GST_START_TEST(what_cannot_be_served_is_named) {
 }
 GST_END_TEST
 
+// What a pad sends: the number of packets of each list, and of those that come alone.
+struct Sent {
+  std::vector<guint> lists;
+  guint alone = 0, markers_within = 0;
+};
+
+GstPadProbeReturn note(GstPad*, GstPadProbeInfo* info, gpointer data) {
+  auto& sent = *static_cast<Sent*>(data);
+  const auto has_marker = [](GstBuffer* packet) { return (bytes_of(packet)[1] & 0x80) != 0; };
+  if ((GST_PAD_PROBE_INFO_TYPE(info) & GST_PAD_PROBE_TYPE_BUFFER_LIST) != 0) {
+    GstBufferList* list = gst_pad_probe_info_get_buffer_list(info);
+    const guint count = gst_buffer_list_length(list);
+    sent.lists.push_back(count);
+    for (guint k = 0; k + 1 < count; ++k) sent.markers_within += has_marker(gst_buffer_list_get(list, k));
+  } else {
+    ++sent.alone;
+  }
+  return GST_PAD_PROBE_OK;
+}
+
+void note_what(GstElement* payloader, Sent& sent) {
+  g_autoptr(GstPad) pad = gst_element_get_static_pad(payloader, "src");
+  gst_pad_add_probe(pad,
+                    static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST),
+                    note, &sent, nullptr);
+}
+
+// A client that joins between two packets would begin with half of a picture.
+GST_START_TEST(the_slices_of_a_picture_are_sent_together) {
+  g_autoptr(GstElement) pipeline = gst_parse_launch(
+      "videotestsrc pattern=snow num-buffers=20 ! "
+      "video/x-raw,format=I420,width=320,height=240,framerate=25/1 ! "
+      "x264enc tune=zerolatency threads=4 sliced-threads=true speed-preset=ultrafast key-int-max=10 ! "
+      "video/x-h264,stream-format=byte-stream ! rtph264pay name=pay config-interval=1 "
+      "aggregate-mode=none ! "
+      "fakesink",
+      nullptr);
+  g_autoptr(GstElement) payloader = gst_bin_get_by_name(GST_BIN(pipeline), "pay");
+  Sent sent;
+  send_whole_pictures(payloader);
+  note_what(payloader, sent);
+  gst_element_set_state(pipeline, GST_STATE_PLAYING);
+  g_autoptr(GstBus) bus = gst_element_get_bus(pipeline);
+  g_autoptr(GstMessage) end = gst_bus_timed_pop_filtered(
+      bus, GST_CLOCK_TIME_NONE, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+  fail_unless_equals_int(GST_MESSAGE_TYPE(end), GST_MESSAGE_EOS);
+  gst_element_set_state(pipeline, GST_STATE_NULL);
+  fail_unless_equals_int(sent.alone, 0);
+  fail_unless_equals_int(sent.lists.size(), 20);
+  fail_unless_equals_int(sent.markers_within, 0);
+  for (const guint packets : sent.lists) fail_unless(packets >= 4, "%u packets for four slices", packets);
+}
+GST_END_TEST
+
+GST_START_TEST(a_picture_without_a_marker_is_sent_when_the_next_one_begins) {
+  GstHarness* harness = gst_harness_new("identity");
+  Sent sent;
+  send_whole_pictures(harness->element);
+  note_what(harness->element, sent);
+  gst_harness_set_src_caps_str(harness, "application/x-rtp");
+  for (const auto& [stamp, marker] :
+       {std::pair{1, false}, {1, false}, {2, false}, {3, false}, {3, true}, {4, true}}) {
+    const guint8 header[12] = {
+        0x80, static_cast<guint8>(96 | (marker ? 0x80 : 0)), 0, 0, 0, 0, 0, static_cast<guint8>(stamp)};
+    GstBuffer* packet = gst_buffer_new_memdup(header, sizeof header);
+    fail_unless_equals_int(gst_harness_push(harness, packet), GST_FLOW_OK);
+  }
+  fail_unless(sent.lists == std::vector<guint>({2, 1, 2, 1}) && sent.alone == 0);
+  gst_harness_teardown(harness);
+}
+GST_END_TEST
+
 static Suite* rtsp_suite() {
   Suite* suite = suite_create("rtsp");
   TCase* cases = tcase_create("general");
@@ -586,6 +659,8 @@ static Suite* rtsp_suite() {
   tcase_add_test(cases, connections_are_limited_and_others_take_the_place_of_those_that_end);
   tcase_add_test(cases, tls_plays_with_the_certificate_that_was_given_and_not_in_the_clear);
   tcase_add_test(cases, what_cannot_be_served_is_named);
+  tcase_add_test(cases, the_slices_of_a_picture_are_sent_together);
+  tcase_add_test(cases, a_picture_without_a_marker_is_sent_when_the_next_one_begins);
   suite_add_tcase(suite, cases);
   return suite;
 }

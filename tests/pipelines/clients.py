@@ -94,13 +94,6 @@ def lost_datagrams():
     return int(values[names.index('RcvbufErrors')])
 
 
-def only_first_wrong(report):
-    """Whether a reader's first picture alone is wrong. A server sends from the packet on at which a client joins: of some
-    forty joins one was seen to begin between two slices of a keyframe."""
-    wrong = re.findall(r'^picture (\d+) ', report, re.MULTILINE)
-    return wrong == ['0']
-
-
 class Readers:
     """Programs that read pictures at the same time."""
 
@@ -135,9 +128,6 @@ class Readers:
             report = self.judge(*what, process)
             if report and any('udp' in word for word in process.args) and lost_datagrams() > self.lost:
                 print(f'the kernel dropped datagrams that their reader was too slow for: {what[0]} reads once more')
-                report = self.judge(*what, start(process.args))
-            elif only_first_wrong(report):
-                print(f'{what[0]} joined amid the slices of a keyframe, which is its first picture: it reads once more')
                 report = self.judge(*what, start(process.args))
             wrong += [report] if report else []
         assert not wrong, '\n'.join(wrong)
