@@ -119,10 +119,14 @@ class Trying {
     if (pipeline == nullptr) {
       g_auto(GStrv) missing = gst_parse_context_get_missing_elements(context);
       g_autofree gchar* names = missing ? g_strjoinv(", ", missing) : nullptr;
-      const std::string what =
-          names ? "GStreamer's " + std::string(names) +
-                      " is not installed: gst-inspect-1.0 and the package lists name its package"
-                : std::string(error ? error->message : "?");
+      std::string what = names ? "GStreamer's " + std::string(names) + " is not installed: "
+                               : std::string(error ? error->message : "?");
+      if (names && g_str_equal(names, "personverify"))
+        what +=
+            "it is built where libopencv-objdetect-dev and libopencv-dnn-dev are; enabled = false in "
+            "[camera.persons] goes without";
+      else if (names)
+        what += "gst-inspect-1.0 and the package lists name its package";
       return lack(camera.line, "camera \"" + camera.name + "\" cannot start: " + what);
     }
     gst_object_ref_sink(pipeline);

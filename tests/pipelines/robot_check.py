@@ -238,7 +238,7 @@ def by_motion_alone(folder):
         words = said(camera + '[camera.persons]\nenabled = false\n')
         assert 'personverify' not in words, words
         words = said(camera + '[camera.persons]\nrequire = "person"\n', 1)
-        assert "robot.toml:1: " in words and 'personverify is not installed' in words, words
+        assert "robot.toml:1: " in words and 'personverify is not installed' in words and 'enabled = false' in words, words
     finally:
         os.chdir('/')
         os.environ.clear()
