@@ -12,7 +12,7 @@ namespace cerberus::tests {
 struct AreaChain {
   explicit AreaChain(vision::Size size) : current(size), previous(size), mask(size) {}
   vision::ForegroundMaskResult feed(vision::GrayView picture, const vision::Transform& motion = {},
-                                    bool still = true) {
+                                    bool still = true, double seconds = 0) {
     const auto d = difference.update(picture, motion, current.view(), previous.view(), histogram);
     return area.update({.picture = picture,
                         .motion = motion,
@@ -20,7 +20,8 @@ struct AreaChain {
                         .current = current.view(),
                         .previous = previous.view(),
                         .histogram = &histogram,
-                        .frames = d.frames},
+                        .frames = d.frames,
+                        .seconds = seconds},
                        mask.view());
   }
   void reset() {

@@ -77,15 +77,20 @@ START_TEST(windows_are_times_not_frames) {
   ck_assert_int_eq(usual.moving, kWindows.moving);
   ck_assert_int_eq(usual.recent, kWindows.recent);
   ck_assert_int_eq(usual.young, kWindows.young);
+  ck_assert_int_eq(usual.newest, kWindows.newest);
+  ck_assert_int_eq(usual.tick, kWindows.tick);
   ck_assert_int_eq(usual.hold, kWindows.hold);
   ck_assert_int_eq(slow.hold, 50);   // 10 s
   ck_assert_int_eq(slow.young, 10);  // 2 s
   ck_assert_int_eq(slow.moving, 3);  // never fewer than three frames
   ck_assert_int_eq(slow.fresh, 1);
-  ck_assert_int_eq(fast.fresh, 4);
-  ck_assert_int_eq(fast.moving, 12);
-  ck_assert_int_eq(fast.recent, 100);
-  ck_assert_int_eq(fast.hold, 250);  // as far as 8 bits count
+  ck_assert_int_eq(fast.tick, 4);  // frames
+  ck_assert_int_eq(fast.fresh, 1);
+  ck_assert_int_eq(fast.moving, 3);
+  ck_assert_int_eq(fast.recent, 25);
+  ck_assert_int_eq(fast.hold, 250);
+  ck_assert_int_eq(fast.newest, 100);  // frames, as pixels are learnt in every one of them
+  ck_assert_int_eq(fast.young, 200);
 }
 END_TEST
 

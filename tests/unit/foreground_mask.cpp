@@ -240,6 +240,33 @@ START_TEST(an_object_that_stops_stays_in_the_mask_of_a_standing_camera) {
 }
 END_TEST
 
+// Whatever the frame rate: seconds after it has stopped, and no more after 15 s.
+START_TEST(an_object_that_stopped_stays_for_ten_seconds_at_any_frame_rate) {
+  const Size size{96, 64};
+  const Scene scene(61, kContrast), texture(62, kContrast);
+  for (const int rate : {5, 25, 100}) {
+    AreaChain chain(size);
+    Image<std::uint8_t> picture(size);
+    std::mt19937 random(8);
+    const auto watch = [&](double from, double to) {  // seconds; returns the pixels of the last mask
+      for (int k = static_cast<int>(from * rate); k < static_cast<int>(to * rate); ++k) {
+        look(scene, {}, picture.view());
+        if (k >= 3 * rate)
+          draw(picture.view(), {std::min(-20 + 60.0 * (static_cast<double>(k) / rate - 3), 40.0), 20, 24},
+               texture);
+        add_noise(picture.view(), 1, 3, random);
+        chain.feed(picture.view(), {}, true, 1.0 / rate);
+      }
+      return chain.moving();
+    };
+    ck_assert_int_eq(watch(0, 3), 0);
+    const long there = watch(3, 11);
+    ck_assert_msg(there > 24 * 24 * 4 / 5, "%d a second: %ld", rate, there);
+    ck_assert_int_eq(watch(11, 19), 0);
+  }
+}
+END_TEST
+
 START_TEST(a_reset_drops_the_old_scene) {
   const Size size{160, 120};
   const Scene first(71), second(72);
@@ -344,7 +371,8 @@ int main() {
        a_square_before_a_still_camera_is_found, a_square_before_a_panning_camera_is_found,
        an_object_that_is_there_from_the_first_frame_is_found_from_the_third,
        an_object_that_leaves_its_place_leaves_no_ghost,
-       an_object_that_stops_stays_in_the_mask_of_a_standing_camera, a_reset_drops_the_old_scene,
+       an_object_that_stops_stays_in_the_mask_of_a_standing_camera,
+       an_object_that_stopped_stays_for_ten_seconds_at_any_frame_rate, a_reset_drops_the_old_scene,
        the_model_recovers_from_an_unannounced_change_of_scene, long_rotation_and_zoom_stay_registered,
        impossible_motion_and_odd_sizes_do_no_harm, steady_state_allocates_nothing_and_stays_small},
       100);

@@ -128,7 +128,7 @@ void compare_row(const CompareRow& row, const CompareLimits& limits, std::uint64
     const auto set = [&](int v) { return hn::Set(d, static_cast<std::int16_t>(v)); };
     const auto weak_sigmas = set(limits.weak_sigmas), strong_sigmas = set(limits.strong_sigmas);
     const auto weak_least = set(limits.weak_least), strong_least = set(limits.strong_least);
-    const auto young = set(limits.young), one = set(1), most = set(255);
+    const auto young = set(limits.young), ticks = set(row.ticks), most = set(255);
     const auto sure = hn::Eq(set(limits.registered), hn::Zero(d));
     const auto m = load(d, row.background + x);
     const auto e = hn::ShiftLeft<4>(hn::Abs(hn::Sub(load(d, row.frame + x), m)));
@@ -152,7 +152,7 @@ void compare_row(const CompareRow& row, const CompareLimits& limits, std::uint64
         hn::Or(hn::AndNot(unsure, is_strong), hn::And(hn::And(unsure, moved), hn::Or(sure, hn::Gt(e, edge))));
     put_bits(d, is_weak, weak, x);
     put_bits(d, is_strong, strong, x);
-    store(d, hn::IfThenZeroElse(moved, hn::Min(hn::Add(load(d, row.quiet + x), one), most)), row.quiet + x);
+    store(d, hn::IfThenZeroElse(moved, hn::Min(hn::Add(load(d, row.quiet + x), ticks), most)), row.quiet + x);
   });
 }
 
@@ -278,7 +278,7 @@ void compare_row_reference(const CompareRow& row, const CompareLimits& limits, s
     const bool unsure = row.age[x] < limits.young;
     set_bit(weak, x, unsure ? moved : e > weak_limit + edge || (moved && e > weak_limit));
     set_bit(strong, x, unsure ? moved && (!limits.registered || e > edge) : e > strong_limit + edge);
-    row.quiet[x] = static_cast<std::uint8_t>(moved ? 0 : std::min(row.quiet[x] + 1, 255));
+    row.quiet[x] = static_cast<std::uint8_t>(moved ? 0 : std::min(row.quiet[x] + row.ticks, 255));
   }
 }
 

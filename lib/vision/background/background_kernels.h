@@ -50,8 +50,9 @@ struct CompareRow {
   const std::uint8_t *spread = nullptr, *age = nullptr;
   const std::uint8_t* tolerance = nullptr;  // registration error, 1/16 pixel, per pixel
   const std::uint64_t* moved = nullptr;     // D(k) > Th
-  std::uint8_t* quiet = nullptr;            // frames since `moved`; counted up here
+  std::uint8_t* quiet = nullptr;            // ticks since `moved`; counted up here ...
   int width = 0;
+  int ticks = 1;  // ... by so many
 };
 struct CompareLimits {
   std::array<std::uint8_t, kBrightness> noise{};  // sigma of frame - background, 1/16 level

@@ -26,13 +26,13 @@ struct BackgroundInput {
   ForegroundMechanisms mechanisms{};
 };
 
-// A pixel takes 5 bytes: mean (8.8 fixed point), spread, age (frames learnt) and quiet (frames since it moved). The
+// A pixel takes 5 bytes: mean (8.8 fixed point), spread, age (frames learnt) and quiet (time since it moved). The
 // model has coordinates of its own. They follow the frame's by whole pixels, which is a copy; interpolation in every
 // frame would blur the model. The remaining transform is fitted to the model's content in every frame, and the frame
 // is warped by it. What leaves the picture is kept coarsely in a mosaic (mosaic.h) for a camera that turns back.
 //
 // A frame is compared with the model and its pixels are classified (foreground_classification.h). Foreground is never
-// learnt. Components that do not move are absorbed as a whole: ghosts at once, components of unclear origin when they
+// learnt. Components that do not move are absorbed as a whole: ghosts at once, undecided components when they
 // have been there longer than what they replaced, objects that stopped after ten seconds (components.h).
 class BackgroundModel {
  public:

@@ -139,6 +139,7 @@ void ForegroundClassification::compare(const ClassificationInput& in, BitView mo
   unreliable_ = 0;
   CompareRow row;
   row.width = in.frame.width;
+  row.ticks = in.frames % windows_.tick == 0;
   row.tolerance = tolerance_.view().data;
   if (in.still) std::fill_n(tolerance_.view().data, row.width, std::uint8_t{16});  // a pixel
   for (int y = 0; y < in.frame.height; ++y) {

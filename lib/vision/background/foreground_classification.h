@@ -54,7 +54,7 @@ class ForegroundClassification {
   void set_period(double seconds) { windows_ = FrameWindows::of(seconds); }
 
   // mask in: D(k) > Th; out: the foreground, not closed. absorb := pixels that the model shall take over at once.
-  // Counts model.quiet up, and limits model.age where the frame does not fit the model.
+  // Counts model.quiet up, in ticks (FrameWindows), and limits model.age where the frame does not fit the model.
   void classify(const ClassificationInput& input, MutableBitView mask, MutableBitView absorb);
 
   // Of the last frame: the pixels that must not be learnt (the closed foreground and a margin), and the standard

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "vision/components/outline_contrast.h"
+
 namespace cerberus::vision {
 namespace {
 
@@ -11,10 +13,6 @@ namespace {
 constexpr struct Parameters {
   int visible_difference = 12;  // grey levels by which a pixel certainly differs from the background
   double uneven = 0.25;         // share of a gap's pixels that may differ so much from their neighbours
-  // Times as much contrast in the frame as in the background, and grey levels a pixel more, at the side of an object. The
-  // ratio is that of components.cpp. swept when the recall on TUD-Stadtmitte was .25: with a margin of 2 unit-steady finds
-  // strips that people leave; with 6 that recall was .24.
-  double side_ratio = 1.3, side_margin = 4;
   // Rows beyond a component in which its sides may go on: of its height, and at least.
   double reach = 0.25;
   int least_reach = 4;
@@ -27,13 +25,9 @@ struct Contrast {
 
   // Across column x; the component lies to the left of a right side.
   static bool is_comparable(RowSpan visible, int x) { return x >= visible.begin + 2 && x + 2 <= visible.end; }
-  static int across(GrayView picture, int x, int y, bool right) {
-    const int out = right ? x + 1 : x - 2, in = right ? x - 2 : x + 1;
-    return std::abs(picture.at(out, y) - picture.at(in, y));
-  }
   void add(GrayView picture, const VisibleColumns& visible, int x, int y, bool right) {
     if (!is_comparable(visible.of(y), x)) return;
-    sum += across(picture, x, y, right);
+    sum += std::abs(picture.at(right ? x + 1 : x - 2, y) - picture.at(right ? x - 2 : x + 1, y));
     ++rows;
   }
   double mean() const { return rows > 0 ? static_cast<double>(sum) / rows : 0; }
@@ -69,12 +63,12 @@ bool is_even(GrayView frame, const Gap& gap, int moved) {
 
 bool is_side_of_object(GrayView frame, GrayView background, const VisibleColumns& visible,
                        std::span<const Run> runs, std::size_t component, bool right, const Rows& rows) {
-  Contrast in_frame, in_background;
+  OutlineContrast contrast;
   for_outermost(runs, component, right, rows, [&](int y, int x) {
-    in_frame.add(frame, visible, x, y, right);
-    in_background.add(background, visible, x, y, right);
+    if (Contrast::is_comparable(visible.of(y), x))
+      contrast.add(frame, background, y, right ? x + 1 : x - 2, right ? x - 2 : x + 1);
   });
-  return in_frame.sum >= kParameters.side_ratio * in_background.sum + kParameters.side_margin * in_frame.rows;
+  return contrast.is_side_of_object();
 }
 
 bool sides_go_on(GrayView frame, const VisibleColumns& visible, BitView mask, std::span<const Run> runs,

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 
 #include "vision/components/component_sides.h"
@@ -22,10 +21,6 @@ constexpr struct Parameters {
       0.2;              // of one that was background before, at the picture's edge: its object may have left
   int least_moved = 4;  // pixels: fewer are noise
   int shake = 3;        // frames within which a shaken camera has not moved away from what it saw
-  int contrast = 6;     // grey levels of an edge: the comparison's limit for noise
-  double contrast_ratio = 1.3;               // times as much contrast in one of frame and background, and
-  double contrast_margin = 2;                // grey levels a pixel more, for the outline to decide
-  double empty_ratio = 2, empty_margin = 4;  // the same where the outline is certainly the background's
   double least_area = 1 / 1280.0;  // of the picture: the outline of a smaller component is no evidence
 
   // Neighbours. Gaps are shares of the taller one's height.
@@ -46,10 +41,13 @@ constexpr struct Parameters {
 }  // namespace
 
 FrameWindows FrameWindows::of(double seconds) {
-  const auto frames = [seconds](double time, int least) {
-    return static_cast<int>(std::clamp(std::round(time / seconds), static_cast<double>(least), 250.0));
+  const auto whole = [](double time, double unit, int least) {
+    return static_cast<int>(std::clamp(std::round(time / unit), static_cast<double>(least), 250.0));
   };
-  return {frames(0.04, 1), frames(0.12, 3), frames(1, 8), frames(2, 8), frames(10, 50), seconds};
+  const int tick = whole(0.04, seconds, 1);
+  const auto ticks = [&](double time, int least) { return whole(time, tick * seconds, least); };
+  return {ticks(0.04, 1),       ticks(0.12, 3),       ticks(1, 8), ticks(10, 50),
+          whole(1, seconds, 8), whole(2, seconds, 8), tick,        seconds};
 }
 
 void ForegroundComponents::preallocate(Size picture) {
@@ -65,8 +63,7 @@ void ForegroundComponents::reset() {
 }
 
 void ForegroundComponents::measure(const ComponentInput& input, const FrameWindows& windows) {
-  const GrayView &f = input.frame, &b = input.background;
-  const int w = f.width;
+  const int w = input.frame.width;
   // A background that had to be registered is less reliable: only present motion counts.
   const int recent_window = input.still ? windows.recent : windows.moving;
   // A person followed by the camera leaves the place in the picture within a frame or two.
@@ -77,7 +74,7 @@ void ForegroundComponents::measure(const ComponentInput& input, const FrameWindo
     int moving = 0, recent = 0, young = 0, newest = 0;
     for (int x = r.first; x < r.end; ++x)
       moving += quiet[x] < moving_window, recent += quiet[x] < recent_window, young += age[x] < windows.young,
-          newest += age[x] < windows.recent;
+          newest += age[x] < windows.newest;
     evidence.moving_pixels += moving;
     evidence.recent_pixels += recent;
     evidence.young_pixels += young;
@@ -88,9 +85,7 @@ void ForegroundComponents::measure(const ComponentInput& input, const FrameWindo
       if (outside < visible.begin || outside >= visible.end) return;
       // Pixels that entered the picture beside an object were learnt from that object: they hold no background edge.
       if (!input.still && age[outside] < std::min(age[inside], kRelearn)) return;
-      evidence.frame_contrast += std::abs(f.at(outside, r.row) - f.at(inside, r.row));
-      evidence.background_contrast += std::abs(b.at(outside, r.row) - b.at(inside, r.row));
-      ++evidence.compared;
+      evidence.contrast.add(input.frame, input.background, r.row, outside, inside);
     };
     if (r.first >= 2) contrast(r.first - 2, std::min(r.first + 1, w - 1));
     if (r.end + 1 < w) contrast(r.end + 1, std::max(r.end - 2, 0));
@@ -104,19 +99,14 @@ void ForegroundComponents::decide(const ComponentInput& input, const Component& 
   const double area = c.area;
   const bool young = evidence.young_pixels > area / 2, newest = evidence.newest_pixels > area / 2;
   const bool at_edge = c.left == 0 || c.top == 0 || c.right == size.width || c.bottom == size.height;
-  const auto exceeds = [&](int a, int b, double ratio, double margin) {
-    return a > ratio * b + margin * evidence.compared;
-  };
-  const int frame = evidence.frame_contrast, background = evidence.background_contrast;
-  evidence.object = evidence.compared > 0 && exceeds(frame, background, p.contrast_ratio, p.contrast_margin);
-  evidence.ghost = evidence.compared > 0 && exceeds(background, frame, p.contrast_ratio, p.contrast_margin);
+  evidence.object = evidence.contrast.is_object();
+  evidence.ghost = evidence.contrast.is_ghost();
   // Motion shows at outlines first. Of a large even object a rim as long as its outline is enough.
   evidence.moved_recently =
       evidence.recent_pixels >=
       std::max<double>(p.least_moved, std::min<double>(p.recent_share * area, evidence.outline));
   // At the picture's edge the motion of a place that an object has just left is that object's last.
-  const bool was_empty =
-      input.mechanisms.was_empty && young && exceeds(background, frame, p.empty_ratio, p.empty_margin);
+  const bool was_empty = input.mechanisms.was_empty && young && evidence.contrast.is_certain_ghost();
   const double least =
       was_empty && at_edge ? std::min<double>(p.empty_share * area, evidence.outline) : p.moving_share * area;
   evidence.moving = evidence.moving_pixels >= std::max<double>(p.least_moved, least);
@@ -188,8 +178,8 @@ void ForegroundComponents::doubt_edges(const ComponentInput& input, BitView mask
   }
 }
 
-// absorb := pixels of the components that are not kept: doubtful ones at once, the others after as many frames at rest
-// as the background had been learnt for, objects before a standing camera after `hold`.
+// absorb := pixels of the components that are not kept: doubtful ones at once, the others after as long at rest as the
+// background had been learnt for, objects before a standing camera after `hold`.
 void ForegroundComponents::absorb_rest(const ComponentInput& input, const FrameWindows& windows,
                                        MutableBitView absorb) const {
   for (int y = 0; y < absorb.height; ++y) std::fill_n(absorb.row(y), absorb.width, std::uint64_t{0});
@@ -200,7 +190,7 @@ void ForegroundComponents::absorb_rest(const ComponentInput& input, const FrameW
       const int patience =
           input.still && evidence.object
               ? windows.hold
-              : std::clamp<int>(input.age.at(x, r.row), kParameters.least_moved, windows.hold);
+              : std::clamp<int>(input.age.at(x, r.row) / windows.tick, kParameters.least_moved, windows.hold);
       if (evidence.doubtful || input.quiet.at(x, r.row) > patience) set_bits(absorb.row(r.row), x, x + 1);
     }
   }

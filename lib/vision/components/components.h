@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vision/components/flashes.h"
+#include "vision/components/outline_contrast.h"
 #include "vision/components/resting_ghosts.h"
 #include "vision/geometry/warp.h"
 #include "vision/image/image.h"
@@ -22,13 +23,16 @@ namespace cerberus::vision {
 // Origin unknown: kept from the first version; guard: mean F of bench-quality.
 inline constexpr std::uint8_t kRelearn = 4;
 
-// Durations in frames. The limits are those of the planes' 8 bits.
+// Durations. Those of rest are in ticks, by which the plane `quiet` counts: as many frames as come nearest to 0.04 s, so that
+// its 8 bits reach for 10 s at any rate. Those of learning are in frames.
 struct FrameWindows {
   int fresh = 1;          // 0.04 s: motion in the last frame
-  int moving = 3;         // 0.12 s, at least 3 frames: a pixel that moved so lately is moving
+  int moving = 3;         // 0.12 s, at least 3 ticks: a pixel that moved so lately is moving
   int recent = 25;        // 1 s: a pixel that moved so lately may have stopped for a moment
-  int young = 50;         // 2 s: a background learnt for less may show an object
-  int hold = 250;         // 10 s, 50 to 250 frames: how long an object that stopped stays foreground
+  int hold = 250;         // 10 s, 50 to 250 ticks: how long an object that stopped stays foreground
+  int newest = 25;        // frames, 1 s: a background learnt for less may still be wrong ...
+  int young = 50;         // ... and for less than 2 s may show an object
+  int tick = 1;           // frames
   double seconds = 0.04;  // from frame to frame
   // seconds: > 0.
   static FrameWindows of(double seconds);
@@ -47,7 +51,7 @@ struct ComponentMechanisms {
 struct ComponentInput {
   GrayView frame, background;  // blurred alike, under the same light
   GrayView age;                // frames for which the model has learnt a pixel
-  GrayView quiet;              // frames since a pixel moved
+  GrayView quiet;              // ticks since a pixel moved
   bool still = false;          // the camera stands
   bool registered = false;     // it moves, and the model fits the frame nearly everywhere
   // The columns that the frame covers, per row; empty: all.
@@ -88,8 +92,7 @@ class ForegroundComponents {
     int moving_pixels = 0, recent_pixels = 0;  // pixels that moved within these windows
     int young_pixels = 0, newest_pixels = 0;   // pixels learnt for less than the windows `young` and `recent`
     int outline = 0;                           // outline pixels to the left and right
-    int compared = 0;  // those of them that lie inside the frame and the background ...
-    int frame_contrast = 0, background_contrast = 0;  // ... and the sums of their contrasts, grey levels
+    OutlineContrast contrast;                  // of those that lie inside the frame and the background
     bool moved_recently = false, moving = false;
     bool object = false, ghost = false;  // decided by the outline; both false: undecided
     bool doubtful = false;               // stays only while it moves

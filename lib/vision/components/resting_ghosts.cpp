@@ -6,7 +6,8 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
+
+#include "vision/components/outline_contrast.h"
 
 namespace cerberus::vision {
 namespace {
@@ -16,15 +17,13 @@ namespace {
 constexpr struct Parameters {
   double least_area = 1 / 640.0;  // of the picture: what is smaller has too short an outline
   double least_seen = 0.25;  // of the outline that borders on the background; whoever passes hides the rest
-  // As components.cpp: the outline is certainly the background's.
-  double contrast_ratio = 2, contrast_margin = 4;
 } kParameters;
 
 constexpr std::size_t kMostComponents = 64;  // more are rain or snow
 
-struct Outline {                  // of one component, its left and right sides
-  int pixels = 0, seen = 0;       // all of them; those that border on the background, ...
-  int frame = 0, background = 0;  // ... and the sums of their contrasts, grey levels
+struct Outline {             // of one component, its left and right sides
+  int pixels = 0;            // all of them
+  OutlineContrast contrast;  // of those that border on the background
 };
 
 std::uint32_t count(BitView bits) {
@@ -42,10 +41,9 @@ void RestingGhosts::remove(const Pictures& pictures, int rested, Labeller& label
   binarise(pictures.quiet, rested - 1, places_.view());
   intersect(places_.view(), mask, places_.view());
   const Parameters& p = kParameters;
-  const GrayView &f = pictures.frame, &b = pictures.background;
-  const auto least = static_cast<std::uint32_t>(p.least_area * f.size().area());
+  const auto least = static_cast<std::uint32_t>(p.least_area * pictures.frame.size().area());
   if (count(places_.view()) < least) return;  // mostly so, and cheaper than labelling
-  const auto components = labeller.find(places_.view(), f.width, least);
+  const auto components = labeller.find(places_.view(), pictures.frame.width, least);
   if (components.size() > kMostComponents) return;
   std::array<Outline, kMostComponents> outlines{};
   for (const Run& r : labeller.runs()) {
@@ -57,17 +55,14 @@ void RestingGhosts::remove(const Pictures& pictures, int rested, Labeller& label
           bit_at(mask.row(r.row), out))
         return;
       if (!pictures.age.empty() && pictures.age.at(out, r.row) == 0) return;  // nothing is known there
-      ++outline.seen;
-      outline.frame += std::abs(f.at(out, r.row) - f.at(in, r.row));
-      outline.background += std::abs(b.at(out, r.row) - b.at(in, r.row));
+      outline.contrast.add(pictures.frame, pictures.background, r.row, out, in);
     };
     look(r.first - 2, r.first + 1);
     look(r.end + 1, r.end - 2);
   }
   for (const Run& r : labeller.runs()) {
     const Outline& outline = outlines[r.component];
-    if (outline.seen < p.least_seen * outline.pixels ||
-        outline.background <= p.contrast_ratio * outline.frame + p.contrast_margin * outline.seen)
+    if (outline.contrast.pixels < p.least_seen * outline.pixels || !outline.contrast.is_certain_ghost())
       continue;
     clear_bits(mask.row(r.row), r.first, r.end);
     set_bits(absorb.row(r.row), r.first, r.end);

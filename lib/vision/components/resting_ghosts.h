@@ -17,14 +17,14 @@ class RestingGhosts {
  public:
   struct Pictures {
     GrayView frame, background;  // blurred alike, under the same light
-    GrayView quiet;              // frames since a pixel moved
+    GrayView quiet;              // ticks since a pixel moved
     GrayView age;                // frames for which the model has learnt a pixel; empty: it has learnt all
     VisibleColumns visible;
   };
 
   void preallocate(Size picture) { places_.resize(bit_mask_size(picture)); }
   // Takes the ghosts from `mask`, the foreground, and adds them to `absorb`, the pixels that the background model takes
-  // over. rested: frames without motion, at least one, from which on a pixel rests. labeller: scratch memory.
+  // over. rested: ticks without motion, at least one, from which on a pixel rests. labeller: scratch memory.
   void remove(const Pictures& pictures, int rested, Labeller& labeller, MutableBitView mask,
               MutableBitView absorb);
   std::size_t bytes() const { return places_.bytes(); }
