@@ -349,6 +349,7 @@ void Detection::read_boxes(const Frame& frame, double step) {
   State& state = *state_;
   state.looks.begins = state.looks.ends = 0;
   state.looks.bodies.clear();
+  state.looks.encloses = vision::kNetworkUse.encloses;
   read_foreign_boxes(frame.buffer, frame.size, state.boxes);
   for (const ForeignBox& found : state.boxes)
     if (found.person)

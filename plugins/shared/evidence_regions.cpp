@@ -36,7 +36,8 @@ std::optional<vision::EvidenceLook> EvidenceRegions::result(const PersonLooks& l
     begun_ = time_;
   else if (looks.ends == 0 || looks.ends != look_)
     return std::nullopt;
-  vision::EvidenceLook look{.bodies = looks.bodies, .of_this_frame = looks.of_this_frame};
+  vision::EvidenceLook look{
+      .bodies = looks.bodies, .of_this_frame = looks.of_this_frame, .encloses = looks.encloses};
   if (begun_before_) look.seconds = static_cast<double>(begun_ - *begun_before_) / GST_SECOND;
   begun_before_ = begun_;
   look_ = 0;

@@ -20,6 +20,7 @@ struct PersonLooks {
   guint ends = 0;
   bool of_this_frame = false;  // the result is of a look that began and ended here; it has no number
   std::vector<vision::PersonDetection> bodies;  // of the result, as of vision::EvidenceLook: frame pixels
+  bool encloses = false;                        // vision::EvidenceLook::encloses, of the result
   bool persons_only = false;                    // tracks that no look has shown are not published
 };
 

@@ -13,9 +13,10 @@
  * - each track has one sum of evidence. A look of the detector adds to it by its score, or takes from it where it does not
  *   show the track; motion inside the box and motion tracks add, rest in a calm scene takes away. What has not moved
  *   needs higher scores;
- * - before a camera that stands a motion track is published as it is, with its identity, and with the type `person` and a
- *   confidence once a look has shown it. Before one that moves it is published once a look has shown it, or while it is
- *   fast. Where the scene is not calm (the picture shakes or blurs, or near things pass) motion tracks do not count;
+ * - before a camera that stands a motion track is published as it is, with its identity, once it has gone a quarter of its
+ *   height, or a look has shown it: then also with the type `person` and a confidence. Before one that moves it is
+ *   published once a look has shown it, or while it is fast, and a network's box goes before its own where the two differ
+ *   by more than half. Where the scene is not calm (the picture shakes or blurs, or near things pass) motion tracks do not count;
  * - a person whom no motion track shows is followed by the picture from look to look, with an identity from 1000001 on;
  * - a motion track that holds several people is replaced by one region for each of them;
  * - `require=person` leaves out what no look has shown: `pirfusion` and `pantiltsink` behind then follow persons only.
@@ -380,6 +381,7 @@ std::optional<std::string> end_look(State& state, GstClockTime now) {
   const std::vector<vision::PersonDetection>& found = state.worker.wait();
   if (const auto& refusal = state.worker.refusal()) return refusal;
   state.looks.ends = state.number;
+  state.looks.encloses = state.use.encloses;
   state.looks.bodies.clear();
   for (const vision::PersonDetection& body : found) {
     GST_LOG("%" GST_TIME_FORMAT ": %.0f,%.0f %.0fx%.0f, score %.2f", GST_TIME_ARGS(looked), body.box.x,

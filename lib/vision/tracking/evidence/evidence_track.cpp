@@ -67,18 +67,22 @@ void EvidenceTrack::follow(const Pyramid* before, const Pyramid& now, const Tran
   place_variance += p.drift * p.drift * seconds * height * height;
 }
 
-void EvidenceTrack::correct(const Box& seen, double weight, const EvidenceParameters& p) {
+void EvidenceTrack::correct(const Box& seen, const EvidenceParameters& p) {
   const Box& then = looked_;
   const Point was = middle_of(then), is = middle_of(seen);
-  const double place = weight * p.place * height, tall = weight * p.height;
+  const double place = p.place * height;
   const double gain = place_variance / (place_variance + place * place);
   centre.x += gain * height * (is.x - was.x) / then.height;
   centre.y += gain * height * (is.y - was.y) / then.height;
   place_variance *= 1 - gain;
-  const double share = height_variance / (height_variance + tall * tall);
+  const double share = height_variance / (height_variance + p.height * p.height);
   height *= std::pow(seen.height / then.height, share);
   shape *= std::pow(seen.width / seen.height * then.height / then.width, share);
   height_variance *= 1 - share;
+}
+
+void EvidenceTrack::distrust() {
+  place_variance = height * height, height_variance = 1;
 }
 
 void EvidenceTrack::keep() {

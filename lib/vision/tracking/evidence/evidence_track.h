@@ -25,7 +25,8 @@ struct EvidenceTrack {
   bool holds_several = false;  // it mirrors a group, or a look has found several bodies in it
   bool person = false;         // a look has shown it
   bool published = false;      // its evidence has sufficed
-  bool moved = false;          // it has travelled, or its inside has moved
+  bool travelled = false;      // its place has moved
+  bool moved = false;          // the same, or its inside has moved
   bool followed = false;       // the picture has shown where it went to this frame
   bool hit = false;            // observed in this frame
   RegionKind kind = RegionKind::person_like;
@@ -49,8 +50,10 @@ struct EvidenceTrack {
   void begin_look() { looked_ = box(); }
   // Where it was then. No area: it has begun since.
   const Box& looked() const { return looked_; }
-  // A look has shown it in this box then. weight: standard deviations are that many times as large.
-  void correct(const Box& seen, double weight, const EvidenceParameters& p);
+  // A look has shown it in this box then.
+  void correct(const Box& seen, const EvidenceParameters& p);
+  // Its box is as good as unknown: the next one that corrects it decides.
+  void distrust();
   // Keeps its way for travels(); once a frame.
   void keep();
   // Whether it has gone so far, h, from any of its places of the last second.

@@ -13,14 +13,7 @@ namespace {
 
 constexpr std::uint32_t kFirstOwn = 1000001;  // identity
 constexpr int kLevels = 3;                    // of the pyramids
-constexpr double kSure = 0.5;                 // score of a body that begins a track, see EvidenceLook
-constexpr double kMotionQuality = 0.8;        // of a track that motion shows
-constexpr double kMissedQuality = -0.5;       // of one that a look does not show
-constexpr double kQualityGain = 0.3, kMostQuality = 2;
-constexpr double kAgeQuality = 0.02, kOld = 5;  // a second of age, up to so many
-constexpr double kWeakWeight = 1.5;             // standard deviations of weak boxes and of motion regions
-constexpr std::size_t kMostKnown = 256;         // motion tracks that are remembered
-constexpr double kStillTime = 1;                // s for which the camera has stood before it counts as still
+constexpr std::size_t kMostKnown = 256;       // motion tracks that are remembered
 
 double visible_share(const Box& box, Size picture) {
   return share_within(box, {0, 0, double(picture.width), double(picture.height)});
@@ -44,7 +37,8 @@ void EvidenceTracker::reset() {
   tracks_.clear(), known_.clear(), results_.clear();
   number_ = look_number_ = 0;
   period_ = 0;
-  camera_stood_ = kStillTime;
+  looks_enclose_ = false;
+  camera_stood_ = p_.still_time;
   next_id_ = std::max(next_id_, kFirstOwn);
 }
 
@@ -116,15 +110,19 @@ void EvidenceTracker::match_look(bool sure) {
   for (std::size_t i = 0; i < tracks_.size(); ++i)
     if (!tracks_[i].hit && !tracks_[i].holds_several && tracks_[i].looked().area() > 0) rows_.push_back(i);
   for (std::size_t j = 0; j < bodies_.size(); ++j)
-    if ((bodies_[j].score >= kSure) == sure && bodies_[j].score > p_.weak) columns_.push_back(j);
+    if ((bodies_[j].score >= p_.sure) == sure && bodies_[j].score > p_.weak) columns_.push_back(j);
   const auto looked = [&](std::size_t i) { return tracks_[i].looked(); };
   const auto box_of = [&](std::size_t j) { return bodies_[j].box; };
-  pair_by_overlap(looked, box_of, [&](std::size_t i, std::size_t j, double) {
+  pair_by_overlap(looked, box_of, [&](std::size_t i, std::size_t j, double overlap) {
     EvidenceTrack& t = tracks_[i];
     const PersonDetection& body = bodies_[j];
-    if (!t.mirrors) t.correct(body.box, sure ? 1 : kWeakWeight, p_);
-    t.add(std::clamp(body.score - (t.moved ? p_.neutral : p_.unmoved), p_.least, p_.most), p_);
-    t.quality += kQualityGain * (std::min(body.score, kMostQuality) - t.quality);
+    if (t.mirrors && sure && looks_enclose_ && overlap < p_.leave && camera_stood_ < p_.still_time) {
+      t.mirrors = false;
+      t.distrust();
+    }
+    if (!t.mirrors) t.correct(body.box, p_);
+    t.add(std::max(body.score - (t.moved ? p_.neutral : p_.unmoved), p_.least), p_);
+    t.quality += p_.quality_gain * (body.score - t.quality);
     t.person = t.person || sure;
     t.hit = true;
     t.unseen = 0;
@@ -151,25 +149,26 @@ void EvidenceTracker::begin_at(const PersonDetection& body) {
   EvidenceTrack t = EvidenceTrack::begin(box);
   t.id = next_id_++;
   t.person = t.hit = true;
-  t.evidence = std::clamp(body.score - p_.unmoved, 0.0, p_.most);
-  t.quality = kQualityGain * std::min(body.score, kMostQuality);
+  t.evidence = std::clamp(body.score - p_.unmoved, 0.0, p_.ceiling);
+  t.quality = p_.quality_gain * body.score;
   tracks_.push_back(t);
 }
 
 void EvidenceTracker::take_look(const EvidenceLook& look) {
+  looks_enclose_ = look.encloses;
   bodies_.clear();
   for (const PersonDetection& body : look.bodies) bodies_.push_back({reduced(body.box), body.score});
   for (EvidenceTrack& t : tracks_) {
     if (!t.mirrors || t.looked().area() <= 0) continue;
     const auto inside = std::ranges::count_if(bodies_, [&](const PersonDetection& body) {
-      return body.score >= kSure && share_within(body.box, t.looked()) >= p_.body.nested;
+      return body.score >= p_.sure && share_within(body.box, t.looked()) >= p_.body.nested;
     });
     t.holds_several = t.kind == RegionKind::group || inside > 1;
   }
   used_.assign(bodies_.size(), 0);
   match_look(true);
   for (std::size_t j = 0; j < bodies_.size(); ++j)
-    if (bodies_[j].score >= kSure && !used_[j]) begin_at(bodies_[j]);
+    if (bodies_[j].score >= p_.sure && !used_[j]) begin_at(bodies_[j]);
   match_look(false);
 }
 
@@ -203,7 +202,7 @@ void EvidenceTracker::match_motion(std::span<const Track> motion) {
     t.add(p_.region * frame_.seconds, p_);
     t.since_motion = t.unseen = 0;
     used_[j] = 1;
-    if (overlap >= p_.adopt) mirror(t, motion[j]);
+    if (overlap >= (looks_enclose_ ? p_.adopt_enclosing : p_.adopt)) mirror(t, motion[j]);
   });
 }
 
@@ -251,7 +250,7 @@ void EvidenceTracker::judge_look(const EvidenceLook& look) {
     if (!t.hit) {
       const bool shown = t.since_motion <= look.seconds;
       if (!shown && t.looked().area() > 0) t.evidence -= p_.missed;
-      t.quality += kQualityGain * ((shown ? kMotionQuality : kMissedQuality) - t.quality);
+      t.quality += p_.quality_gain * ((shown ? p_.motion_quality : p_.missed_quality) - t.quality);
     }
     if (t.mirrors) {
       t.evidence = std::max(t.evidence, 0.0);
@@ -267,20 +266,20 @@ void EvidenceTracker::judge_look(const EvidenceLook& look) {
 void EvidenceTracker::end_tracks() {
   const Size picture = frame_.picture.size();
   for (EvidenceTrack& t : tracks_) {
-    t.moved = t.moved || t.travels(p_.travel);
-    const bool alone = t.mirrors && (camera_stood_ >= kStillTime || t.fast >= p_.fast_time);
-    // A detector errs at one place of a still picture again and again; a person there moves at some time.
-    const bool person = t.person && (t.moved || camera_stood_ < kStillTime);
+    t.travelled = t.travelled || t.travels(p_.travel);
+    t.moved = t.moved || t.travelled;
+    const bool alone = t.mirrors && t.travelled && (camera_stood_ >= p_.still_time || t.fast >= p_.fast_time);
+    // Windows are mistaken at one place of a still picture again and again; a person there moves at some time.
+    const bool person = t.person && (t.mirrors || t.moved || looks_enclose_ || camera_stood_ < p_.still_time);
     if (t.evidence >= p_.publish && (person || alone)) t.published = true;
   }
   std::erase_if(tracks_, [&](const EvidenceTrack& t) {
     return (t.evidence < 0 && !t.mirrors) || t.height <= p_.least_height ||
            visible_share(t.box(), picture) <= p_.least_visible;
   });
-  const auto rank = [](const EvidenceTrack& t) { return t.quality + kAgeQuality * std::min(t.age, kOld); };
   std::ranges::sort(tracks_, [&](const EvidenceTrack& a, const EvidenceTrack& b) {
     if (a.published != b.published) return a.published;
-    return rank(a) != rank(b) ? rank(a) > rank(b) : a.id < b.id;
+    return a.quality != b.quality ? a.quality > b.quality : a.id < b.id;
   });
   std::size_t kept = 0;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {

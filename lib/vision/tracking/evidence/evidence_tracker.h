@@ -36,6 +36,8 @@ struct EvidenceLook {
   std::span<const PersonDetection> bodies;
   double seconds = 0.25;       // since the look before
   bool of_this_frame = false;  // it has begun at the frame that it is passed with
+  // Boxes enclose the body whatever its pose, as a network's do; a window's have one shape for all.
+  bool encloses = false;
 };
 
 struct EvidenceResult {
@@ -102,6 +104,7 @@ class EvidenceTracker {
   std::uint64_t number_ = 0, look_number_ = 0;
   Transform motion_, since_look_;  // reduced pixels
   double period_ = 0;              // s from look to look
+  bool looks_enclose_ = false;     // EvidenceLook::encloses of the last one
   double camera_stood_ = 0;        // s
   std::uint32_t next_id_ = 0;
 };
