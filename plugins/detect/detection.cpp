@@ -372,6 +372,7 @@ void Detection::publish_tracks(const Frame& frame, const vision::Analysis& recor
   for (const vision::Track& track : *record.tracks) state.moving.push_back(tracked(track));
   const double step = step_of(frame);
   if (record.luma) return publish(frame, source_of((*record.luma)->view()), step);
+  if (!state.judges) return publish(frame, {}, step);
   const VideoFrame mapped(*frame.info, frame.buffer, GST_MAP_READ);
   if (frame.fresh) state.stretch.reset();
   publish(frame, mapped ? state.stretch.stretched(luma_source(*mapped.get())) : vision::LumaSource{}, step);
