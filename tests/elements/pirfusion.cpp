@@ -75,6 +75,21 @@ GST_START_TEST(only_confirmed_tracks_make_the_camera_found) {
 }
 GST_END_TEST
 
+GST_START_TEST(a_verified_person_is_the_target_in_place_of_what_only_moves) {
+  Rig rig(true, "target=largest");
+  fail_unless_equals_int(rig.show(two(0)).target, 6);
+  GstBuffer* buffer = two(40 * kMs);
+  CerberusRegion person;
+  cerberus_region_init(&person);
+  person.id = 7;
+  person.tracked = person.person = TRUE;
+  person.width = person.height = 2;
+  fail_unless(cerberus_buffer_add_region(buffer, &person));
+  fail_unless_equals_int(rig.show(buffer).target, 7);
+  fail_unless_equals_int(rig.show(two(80 * kMs)).target, 6);
+}
+GST_END_TEST
+
 GST_START_TEST(properties_count_while_playing) {
   Rig rig;
   rig.add_pir();
@@ -389,6 +404,7 @@ static Suite* pirfusion_suite() {
   suite_add_tcase(s, tc);
   tcase_add_test(tc, every_frame_carries_a_decision_and_only_changes_are_posted);
   tcase_add_test(tc, only_confirmed_tracks_make_the_camera_found);
+  tcase_add_test(tc, a_verified_person_is_the_target_in_place_of_what_only_moves);
   tcase_add_test(tc, properties_count_while_playing);
   tcase_add_test(tc, the_choice_of_its_head_downstream_is_the_decision_until_that_ends_it);
   tcase_add_test(tc, hysteresis_and_hold_stopped_are_the_users);
