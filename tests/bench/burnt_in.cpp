@@ -300,7 +300,7 @@ void print(const std::string& name, const WithPeople& r, const std::string& verd
   std::fflush(stdout);
 }
 
-// Of the recall that a writing over the picture may cost. One corner of twelve is at .012 (docs/quality.md).
+// Of the recall that a writing over the picture may cost. One corner of twelve is at .012.
 constexpr double kCost = .015;
 
 void with_people(const std::filesystem::path& data, const std::string& vtest, Asked& asked) {

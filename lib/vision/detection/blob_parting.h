@@ -22,12 +22,12 @@ class BlobParting {
   // Lengths in heights of the blob. Guard: tests/unit (blob_parting, regions), MOTA on TUD-Campus and TUD-Stadtmitte.
   struct Parameters {
     int least_height = 40;  // pixels of a blob. derived: a valley is 3 rows; less is noise
-    // Foreground in a column through the trunk of a person, who may be lower than the blob. swept: docs/quality.md,
+    // Foreground in a column through the trunk of a person, who may be lower than the blob. swept:
     // .3 to .5.
     double trunk = 0.38;
-    // Foreground in the emptiest column between two people: their shadow. swept: docs/quality.md, .02 to .15.
+    // Foreground in the emptiest column between two people: their shadow. swept: .02 to .15.
     double valley = 0.07;
-    // Share of the foreground on both sides that differs from the frame before. swept: docs/quality.md, .2 to .4. Guard:
+    // Share of the foreground on both sides that differs from the frame before. swept: .2 to .4. Guard:
     // bench-steady, where a place that was left is a region with .28 and less.
     double changed = 0.35;
   };

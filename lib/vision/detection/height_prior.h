@@ -18,23 +18,23 @@ namespace cerberus::vision {
 class HeightPrior {
  public:
   // Where no origin stands the value was chosen by hand on vtest.avi. Guard: tests/unit/height_prior and the boxes on
-  // vtest.avi (docs/quality.md).
+  // vtest.avi.
   struct Parameters {
     double spread =
         0.10;  // of the height, standard deviation. derived: adults differ by 5 %, blobs by as much
-    // Standard deviations from the line within which a sample agrees. swept: docs/quality.md, 1.2 to 2.5.
+    // Standard deviations from the line within which a sample agrees. swept: 1.2 to 2.5.
     double agree = 1.5;
     double share = 0.5;  // of the samples' weight that must agree
-    // Agreeing samples before the prior answers. swept: docs/quality.md, 8 to 12.
+    // Agreeing samples before the prior answers. swept: 8 to 12.
     int least = 10;
     double uncertain = 0.16;  // relative standard error of the line beyond which it does not answer
     // Samples that count as one: those of one person are alike, by frames of who walks alone and by strides of bodies.
-    // swept: docs/quality.md, 1 to 4.
+    // swept: 1 to 4.
     double repeats = 2.0;
     int guesses = 40;         // pairs of samples tried as lines
     int through_horizon = 4;  // every so manieth guess is a line through the picture's upper edge
     // Standard deviation of the slope before any sample, times the slope that belongs to a horizon at the picture's upper
-    // edge: the camera of a robot has the horizon in the middle. swept: docs/quality.md, 1 to 3.
+    // edge: the camera of a robot has the horizon in the middle. swept: 1 to 3.
     double slope_spread = 2;
     double baseline = 0.2;    // of the larger height: distance of the foot rows of a pair, at least
     double steepest = 4.0;    // body height / mounting height. derived: a camera at 0.45 m

@@ -26,7 +26,7 @@ class PeopleFinder {
     double core_moving, side_moving;
   };
   // Where no origin stands the value was chosen by hand on vtest.avi and TUD-Campus. Guard: tests/unit (people,
-  // regions), the boxes on vtest.avi (docs/quality.md), MOTA 70 on PETS09-S2L1.
+  // regions), the boxes on vtest.avi, MOTA 70 on PETS09-S2L1.
   struct Parameters {
     // The space above a head is background: a trunk is no head. It has no price.
     Part free_space{-0.10, -0.02, 0.07, 0.07, 0.03, 0.03};
@@ -35,7 +35,7 @@ class PeopleFinder {
                               {0.14, 0.50, 0.095, 0.175, 0.75, 0.30},
                               {0.50, 1, 0.095, 0.19, 0.65, 0.33}}};
     double elsewhere = 0.13;  // probability that a pixel of the group beside all persons is foreground
-    // Nats a pixel of a body; a whole person gains 1 to 1.7. swept: docs/quality.md, .25 to .4.
+    // Nats a pixel of a body; a whole person gains 1 to 1.7. swept: .25 to .4.
     double price = 0.3;
     // A height that differs from the expected one costs as in a log-normal prior.
     double height_weight = 0.16;  // nats of a squared height. derived: half of a body's pixels, 0.33 h^2
@@ -43,12 +43,12 @@ class PeopleFinder {
     // with .08 and 73.5 with .11, where a clock over the picture costs 2 % of the recall.
     double spread = 0.08;
     // Where the height is not known the blob's is expected, and smaller ones are tried by steps. measured: the step of the
-    // trial on TUD-Campus. swept: docs/quality.md, .3 to .45.
+    // trial on TUD-Campus. swept: .3 to .45.
     double unknown_spread = 0.4;  // of the logarithm of the height
     double unknown_step = 0.08;   // of the blob's height
     double other_height = 0.08;  // a height that is tried as well is by so much lower or higher than expected
     // Nats of a squared height, before the price of an unusual height is taken off: less is the rest of a person already
-    // found. swept: docs/quality.md, .09 to .11. Guard: MOTA .05 on TUD-Stadtmitte, which jumps with it.
+    // found. swept: .09 to .11. Guard: MOTA .05 on TUD-Stadtmitte, which jumps with it.
     double least_gain = 0.0975;
     double aspect = 0.36;  // width / height of a walking body
     // Rows of cells that a body is cut into, if it has as many pixels. measured: with 24 MOTA on PETS09-S2L1 is 3
@@ -64,7 +64,7 @@ class PeopleFinder {
     // Blocks: cars, doors. measured: gaps of rows of people on vtest.avi against cars on highway.
     double solid = 0.88;  // of the persons' boxes that is foreground: people leave more gaps
     int block_width = 4;  // body widths of a wide block: a row of so many people has gaps
-    // Share of gaps, at least, in a row of people; cars have .06 to .10. swept: docs/quality.md, .11 to .14.
+    // Share of gaps, at least, in a row of people; cars have .06 to .10. swept: .11 to .14.
     double gaps = 0.13;
     double gaps_after = 0.16;  // the same where a wide block was a frame ago
     // Share of gaps, at least, of people in one blob before their height is known; in a blob with fewer gaps bodies are a

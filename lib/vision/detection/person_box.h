@@ -12,24 +12,24 @@
 namespace cerberus::vision {
 
 // Lengths in heights of the person. Where no origin stands the value was chosen by hand on vtest.avi and TUD-Campus.
-// Guard: tests/unit/person_box, MOTA on PETS09-S2L1 (bench-quality), the width on four sequences (bench-fit).
+// Guard: tests/unit/person_box, MOTA on PETS09-S2L1 (bench-quality), the width on four sequences (bench-development).
 struct PersonBoxParameters {
   // Width. measured: median .36 on PETS09-S2L1, .37 on TUD-Campus, .31 on TUD-Stadtmitte.
   double aspect = 0.345;
-  // Weight of the foreground's edges against the expected ones. swept: docs/quality.md, .6 to .75.
+  // Weight of the foreground's edges against the expected ones. swept: .6 to .75.
   double measured = 0.72;
   // Sides. A column belongs to the person where at least `column` of a height is foreground between `below_head` and
-  // `above_feet`: an outstretched hand and the shadow around the feet do not. swept: docs/quality.md, .18 to .22.
+  // `above_feet`: an outstretched hand and the shadow around the feet do not. swept: .18 to .22.
   double reach = 0.32;  // from the axis
   double column = 0.21, below_head = 0.05, above_feet = 0.85;
   // Shares of the foreground that differ from the frame before. Outermost columns are left out where less than `rests` of
   // theirs does and at least `changes` of all columns' does: they are the place that a walker has left. swept:
-  // docs/quality.md, 0 to .4 and 0 to .2.
+  // 0 to .4 and 0 to .2.
   double rests = 0.27, changes = 0.1;
-  double trunk = 0.1;  // from the axis: these columns are his. swept: docs/quality.md, .06 to .12
+  double trunk = 0.1;  // from the axis: these columns are his. swept: .06 to .12
   // Head: the first row of at least head_row foreground within head_reach of the axis.
   double head_reach = 0.1, head_row = 0.05;
-  // Searched above and below the expected row. swept: docs/quality.md, .15 and .25.
+  // Searched above and below the expected row. swept: .15 and .25.
   double head_rise = 0.12, head_fall = 0.25;
   // Feet: the last row of at least foot_row foreground within leg_reach of the axis.
   double leg_reach = 0.2, foot_row = 0.04;

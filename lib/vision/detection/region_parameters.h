@@ -2,7 +2,7 @@
 // Tuned numbers of the way from components to regions (regions.cpp).
 //
 // Where no origin stands the value was chosen by hand on vtest.avi. Guard of all: tests/unit/regions and the boxes on
-// vtest.avi (docs/quality.md).
+// vtest.avi.
 #pragma once
 
 #include "vision/detection/blob_parting.h"
@@ -47,7 +47,7 @@ struct RegionParameters {
   // a person who leaves is a region for a frame (unit places).
   double walked_to_be_seen = 0.1;
   // Share of a body's foreground that differs from the frame before, at least, where it goes somewhere: bodies are found here
-  // and there in the place that somebody has left. 25 frames a second. swept: docs/quality.md, 0 to .1. Guard: unit steady,
+  // and there in the place that somebody has left. 25 frames a second. swept: 0 to .1. Guard: unit steady,
   // where that place is a region for a frame with 0.
   double stirs = 0.03;
   // Share of a blob's foreground that its only body leaves unexplained and from which on the blob is a group. measured:
@@ -60,9 +60,9 @@ struct RegionParameters {
   double loose = 0.15;
   // Share of the height of a blob that is as high and as slender as one person, below its only body: more, and the blob's
   // own box counts, as feet that far down are beyond what fit_box searches (PersonBoxParameters::foot_fall). swept:
-  // docs/quality.md, .05 to .13.
+  // .05 to .13.
   double feet = 0.1;
-  // Heights around a person's box that it explains as well. swept: docs/quality.md, .06 to .12.
+  // Heights around a person's box that it explains as well. swept: .06 to .12.
   double slack = 0.08;
   double explained = 0.4;  // of a component's box that persons cover: it is theirs
 

@@ -28,7 +28,7 @@ class WalkingBodies {
     double same_height = 0.8;
     int least_frames = 3;  // before a distance counts. As a walker's
     // Distance that is one more sample of its height: what stands teaches nothing. measured: MOTA on TUD-Stadtmitte is .017,
-    // .006 with .06 and .004 with .1, that on PETS09-S2L1 .731, .731 and .727 (docs/quality.md); with a sample every frame a
+    // .006 with .06 and .004 with .1, that on PETS09-S2L1 .731, .731 and .727; with a sample every frame a
     // clock over the picture costs 1.1 % of the recall.
     double stride = 0.08;
   };

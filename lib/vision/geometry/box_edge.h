@@ -11,7 +11,7 @@ namespace cerberus::vision {
 
 struct BoxEdgeParameters {
   // Analysed pixels on each side. derived: the mean of three pixels reaches half a pixel to one beyond an edge, and a
-  // threshold cuts a part of that off. swept: docs/quality.md, 0 to .5. Guard: widths on PETS09-S2L1 (bench-fit).
+  // threshold cuts a part of that off. swept: 0 to .5. Guard: widths on PETS09-S2L1 (bench-development).
   double blur = 0.4;
   double most = 0.1;  // share of an extent that is taken off on each side, at most: for boxes of a few pixels
 };

@@ -34,24 +34,24 @@ class DataAssociation {
 
     // Appearance distance. measured on vtest.avi: the same person again .16 in the median and .28 in one of ten; two
     // persons .36 in the median.
-    // Costs nothing; and the most of a track that walked out of a head's picture. swept: docs/quality.md, .1 to .25. Guard:
+    // Costs nothing; and the most of a track that walked out of a head's picture. swept: .1 to .25. Guard:
     // unit coats.
     double usual_change = 0.15;
     double appearance_cost = 3.0;  // per unit beyond it,
     // and known_cost more of a model that was learnt for long, approached with known_time, for tracks in view: what was seen
-    // for a second may be one side of a person. swept: docs/quality.md, 0 to 8 and 3 to 8 s. Guard: bench-variants, unit
+    // for a second may be one side of a person. swept: 0 to 8 and 3 to 8 s. Guard: bench-variants, unit
     // data_association.
     double known_cost = 5.0;
     double known_time = 5.0;      // s, time constant
     double sudden_change = 0.45;  // more than the last one by this: another object (shade comes step by step)
-    // The most for a track that comes back into the picture. swept: docs/quality.md, .35 to .45. Guard: bench-moving_window.
+    // The most for a track that comes back into the picture. swept: .35 to .45. Guard: bench-moving_window.
     double off_screen_change = 0.4;
 
     // Blobs of several.
     double larger = 1.3;  // times the area of a track: a region that may hold others
     double inside = 0.5;  // of a track's area that lies in the blob
     double crowd = 0.2;   // of a region's area that another track covers: not isolated
-    // Intersection over union of an occluded track with the region. swept: docs/quality.md, .3 to .36, which are
+    // Intersection over union of an occluded track with the region. swept: .3 to .36, which are
     // equal but for person 11 of bench-in_window.
     double occluded_overlap = 0.33;
 

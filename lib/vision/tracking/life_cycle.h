@@ -26,8 +26,8 @@ namespace cerberus::vision {
 
 class LifeCycle {
  public:
-  // Where no origin stands the value was chosen by hand on vtest.avi and davis_tennis. Guard: boxes on vtest.avi
-  // (docs/quality.md), MOTA 70 on PETS09-S2L1, tests/unit (tracker, standing, straight, turning).
+  // Where no origin stands the value was chosen by hand on vtest.avi and davis_tennis. Guard: boxes on vtest.avi,
+  // MOTA 70 on PETS09-S2L1, tests/unit (tracker, standing, straight, turning).
   struct Parameters {
     // Confirmation.
     // S that an object has moved. The uncovered place of an object that belonged to the background model, and a lamp
@@ -37,9 +37,9 @@ class LifeCycle {
     int slow_least_hits = 2;      // or these, at a low frame rate: after slow_confirm x confirm-time
     double slow_confirm = 3;      // times confirm-time
     double confirm_slack = 0.99;  // of confirm-time: rounding of the frame distances adds up
-    // Share of a tentative track's frames that had a region, at least. swept: docs/quality.md, .4 to .6.
+    // Share of a tentative track's frames that had a region, at least. swept: .4 to .6.
     double hit_share = 0.5;
-    // Times confirm-time without region after which a tentative track with fewer is lost. swept: docs/quality.md, .5 to 1.
+    // Times confirm-time without region after which a tentative track with fewer is lost. swept: .5 to 1.
     // Guard: bench-in_window.
     double tentative_coast = 0.6;
     // Coasting.
@@ -48,7 +48,7 @@ class LifeCycle {
     double certain = 0.4;  // of the box's width: standard deviation up to which a coasted track is published
     // Of the largest height that it had: what the picture's left or right edge cuts to this width is mostly outside, and
     // unpublished. derived: half of the width of a walking person. swept: MOTA on TUD-Campus is .21 without, .26 to .27
-    // from .14 to .22 (docs/quality.md).
+    // from .14 to .22.
     double sliver = 0.18;
     double occluded_coast = 0.3;  // s for which an occluded track is published
     // Stopping: the object was well seen, slower and slower.
@@ -57,7 +57,7 @@ class LifeCycle {
     double stop_travel = 0.45;  // S that it came
     double seen = 1.5;          // s for which it was seen
     // Share of the largest width times the largest height that it had: a smaller box is what is left of it. measured: one was
-    // 11x4 pixels, another 37x5. swept: docs/quality.md, 0 to .25. Guard: precision at rest in bench-moving_window.
+    // 11x4 pixels, another 37x5. swept: 0 to .25. Guard: precision at rest in bench-moving_window.
     double remnant = 0.08;
     double covered = 0.2;  // of its box that another track covers: it may be behind that one
     // Off-screen.

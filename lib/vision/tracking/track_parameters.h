@@ -3,7 +3,7 @@
 //
 // S is the object's own length, max(width, height): a standing person is about 1.7 m, so that a walk of 1.4 m/s is
 // 0.8 S a second at any distance and any picture size. Where no origin stands the value was chosen by hand on vtest.avi
-// and davis_tennis. Guard of all of them, where no other stands: the boxes on vtest.avi (docs/quality.md) and
+// and davis_tennis. Guard of all of them, where no other stands: the boxes on vtest.avi and
 // MOTA 70 on PETS09-S2L1.
 #pragma once
 
@@ -17,7 +17,7 @@ struct TrackParameters {
   // from 5 on). Guard: bench-moving_window.
   double panned_acceleration = 3.0;
   // S/s. What is faster than this may change its velocity by as much more: its first velocity is known worse, and each
-  // frame shows more of its way. derived: somebody who jogs, 12 km/h. swept: docs/quality.md, 1.5 to 4. Guard: unit
+  // frame shows more of its way. derived: somebody who jogs, 12 km/h. swept: 1.5 to 4. Guard: unit
   // fast_object.
   double fast = 2.0;
   double birth_speed = 3.0;      // S/s, standard deviation of the unknown first velocity
@@ -27,18 +27,18 @@ struct TrackParameters {
   double size_noise = 0.15;      // of the logarithm, standard deviation of a region's extent
   double size_wander = 0.15 * 0.15;  // 1/s. derived: a person's extent changes by 15 % in a second
   double border_wander = 1.5 * 1.5;  // 1/s, of an extent that the picture's edge cuts
-  // Times less that a shrinking extent counts for a standing object. swept: docs/quality.md, 1 to 20.
+  // Times less that a shrinking extent counts for a standing object. swept: 1 to 20.
   double fade = 2.0;
   // Factor on the weight, the inverse variance, of a region that is wider than the track while the camera moves. swept:
-  // docs/quality.md, 1 to 4. Guard: unit track_hypothesis (1), the skier's share in bench-quality (from 2.5 on), the
-  // player's width in bench-fit (1 on Debian 13).
+  // 1 to 4. Guard: unit track_hypothesis (1), the skier's share in bench-quality (from 2.5 on), the
+  // player's width in bench-development (1 on Debian 13).
   double panned_widens = 1.5;
-  // s, time constant in which a coasted track slows down. swept: docs/quality.md, .6 to 2.5. Guard: person 1 of
+  // s, time constant in which a coasted track slows down. swept: .6 to 2.5. Guard: person 1 of
   // bench-in_window, who is lost with 1.
   double coast_brake = 0.8;
   double off_screen_brake = 3.0;  // s, the same while the track is off-screen
   // S/s, the largest standard deviation of its velocity as it goes off-screen: the filter's is that of what a moving camera
-  // follows. swept: docs/quality.md, .1 to 100. Guard: the IDF1 of bench-moving_window.
+  // follows. swept: .1 to 100. Guard: the IDF1 of bench-moving_window.
   double off_screen_speed = 0.3;
   double confidence_time = 0.5;  // s, time constant of the confidence
 
@@ -46,7 +46,7 @@ struct TrackParameters {
   double same_extent_least = 0.65, same_extent_most = 1.5;
   // Heights. A region that only this track has, as high as the track, wider than it and narrower than this, is of the same
   // extent: a walker in mid-stride. Narrower again it is so by same_extent_least only: half of a person dissolves sooner
-  // than a stride ends. derived: a stride is .43 of the height, a foot .15. swept: docs/quality.md, 0 to .75.
+  // than a stride ends. derived: a stride is .43 of the height, a foot .15. swept: 0 to .75.
   double stride = 0.65;
 
   // Validation gate and pair cost.
@@ -63,7 +63,7 @@ struct TrackParameters {
   double cut_margin = 0.01;    // of the picture's side: a region this close to the edge is cut by it,
   double cut_most = 0.7;       // of the side: unless the object fills the picture from edge to edge
   double leaving = 0.7;        // of the largest extent so far: a cut region below it is leaving the picture,
-  // s, and its place is where it should be by now if it was seen whole since. swept: docs/quality.md, .5 to 10.
+  // s, and its place is where it should be by now if it was seen whole since. swept: .5 to 10.
   double whole_lasts = 2.0;
 
   // Growth: what shows that an object moves although its centre does not.
@@ -82,9 +82,9 @@ struct TrackParameters {
   double extent_known = 0.5;   // s of fitting regions from which on the extent is well known
   double fragment_walk = 0.5;  // S that a fragment of a standing object moves before it replaces the object
   // s for which a track has shared a group's region, or its own region was a group, and from which on it is of that kind.
-  // swept: docs/quality.md, .3 to 1.4.
+  // swept: .3 to 1.4.
   double shared_group = 1.0;
-  // s, the same of a track of kind `thing` that was not person-like for shared_group. swept: docs/quality.md, 0 to 1. Guard:
+  // s, the same of a track of kind `thing` that was not person-like for shared_group. swept: 0 to 1. Guard:
   // unit track_hypothesis.
   double thing_group = 0.2;
 
