@@ -51,6 +51,8 @@ class ModelDetector : public vision::PersonDetector {
         net_(network.net),
         outputs_of_net_(net_.getUnconnectedOutLayersNames()),
         reader_(network.input, person, network.darknet_classes),
+        own_input_(network.input),
+        takes_any_size_(network.darknet_classes > 0),
         input_(network.input),
         settings_(settings),
         threshold_(threshold) {}
@@ -121,6 +123,10 @@ class ModelDetector : public vision::PersonDetector {
   std::optional<std::string> look(const vision::PersonPicture& picture,
                                   std::vector<vision::PersonDetection>& hits) {
     const vision::Size size = picture.luma.size();
+    if (takes_any_size_) {
+      input_ = vision::darknet_input_for(size, own_input_);
+      reader_.set_input(input_);
+    }
     const double scale = std::min(static_cast<double>(input_.width) / size.width,
                                   static_cast<double>(input_.height) / size.height);
     frame(picture, {std::clamp(static_cast<int>(scale * size.width), 1, input_.width),
@@ -147,7 +153,9 @@ class ModelDetector : public vision::PersonDetector {
   cv::dnn::Net net_;
   const std::vector<cv::String> outputs_of_net_;
   vision::NetworkReader reader_;
-  const vision::Size input_;
+  const vision::Size own_input_;  // as its file says
+  const bool takes_any_size_;
+  vision::Size input_;
   const InputSettings settings_;
   const double threshold_;
   cv::Mat luma_, blue_, red_, blob_;

@@ -42,7 +42,8 @@
  * - SSD: 1 x 1 x N x 7, or 1 x N x 4 (corners) and 1 x N x C;
  * - NanoDet: scores (N x C) and distances (N x 32) for cells of 8, 16 and 32 pixels, or of 8 to 64; NanoDet-Plus:
  *   1 x N x (C + 32);
- * - darknet: every `[yolo]` layer (YOLO 3 and 4, Yolo-Fastest).
+ * - darknet: every `[yolo]` layer (YOLO 3 and 4, Yolo-Fastest). Its input takes the frame's aspect, and up to twice the pixels
+ *   where it is smaller than 448x448.
  *
  * The shape, the number of boxes for that input and the numbers themselves tell them apart; where they do not, the
  * number of classes does, which `labels` names. Outputs that are none of these, mostly boxes without a size, and scores beyond

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "vision/persons/darknet_file.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -128,11 +129,31 @@ START_TEST(numbers_of_a_file_of_weights_are_counted_behind_its_header) {
 }
 END_TEST
 
+// Sides of whole cells; a small network may look at twice as many pixels, a large one at as many as it has.
+START_TEST(the_input_has_the_frames_aspect) {
+  for (const Size own : {Size{64, 64}, Size{320, 320}, Size{416, 416}, Size{608, 608}, Size{96, 320}})
+    for (const Size frame :
+         {Size{640, 480}, Size{1920, 1080}, Size{480, 640}, Size{100, 100}, Size{4000, 10}}) {
+      const auto scale = [&](Size s) {
+        return std::min(double(s.width) / frame.width, double(s.height) / frame.height);
+      };
+      const Size input = darknet_input_for(frame, own);
+      const int pixels = input.width * input.height, before = own.width * own.height;
+      ck_assert(input.width % 32 == 0 && input.height % 32 == 0 && input.width > 0 && input.height > 0);
+      ck_assert_msg(pixels <= 2 * before && (before < 448 * 448 || pixels <= before), "%d x %d", input.width,
+                    input.height);
+      ck_assert(scale(input) >= scale(own));
+    }
+  // 16:9 fills the square by 9/16 only: at twice the pixels 1.8 times as large, less what whole cells lose.
+  ck_assert_int_ge(darknet_input_for({1920, 1080}, {320, 320}).width, 544);
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "darknet_file",
       {a_configuration_gives_the_input_and_the_classes, weights_are_counted_through_the_layers,
        what_is_no_configuration_of_a_detector_is_refused_with_the_reason,
        every_beginning_of_a_configuration_is_read_or_refused, a_threshold_is_written_into_each_yolo_layer,
-       numbers_of_a_file_of_weights_are_counted_behind_its_header});
+       the_input_has_the_frames_aspect, numbers_of_a_file_of_weights_are_counted_behind_its_header});
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <span>
 #include <utility>
@@ -16,6 +17,10 @@ namespace {
 
 constexpr int kLargestSide = 8192;  // of a picture, pixels
 constexpr int kPlanes = 3;
+constexpr int kCell = 32;  // pixels: the side of a yolo layer's coarsest cells
+// Pixels up to which a small network's input grows. swept on all development sequences: inputs of 320, 448 and 640 pixels
+// squared give a MOTA of .761, .775 and .731; 12, 22 and 40 ms a look.
+constexpr int kMostPixels = 448 * 448;
 // Of a layer's planes, filters and groups, and of a kernel's side. Chosen: beyond every network, and a layer has no more than
 // 2^44 weights.
 constexpr int kLargestCount = 1 << 16, kLargestKernel = 1 << 6;
@@ -176,6 +181,22 @@ std::optional<DarknetNetwork> read_darknet_cfg(std::string_view cfg, std::string
   if (network.classes == 0) return refuse("it has no [yolo] layer, which finds boxes");
   network.weights = layers.weights();
   return network;
+}
+
+Size darknet_input_for(Size frame, Size own) {
+  const auto scale_of = [&](Size s) {
+    return std::min(static_cast<double>(s.width) / frame.width, static_cast<double>(s.height) / frame.height);
+  };
+  const int pixels = own.width * own.height;
+  const int most = std::max(pixels, std::min(2 * pixels, kMostPixels));
+  Size best = own;
+  for (int width = kCell; width <= most / kCell; width += kCell) {
+    const double needed = std::ceil(static_cast<double>(width) * frame.height / frame.width / kCell) * kCell;
+    const int tallest = most / width / kCell * kCell;
+    const Size size{width, needed < tallest ? static_cast<int>(needed) : tallest};
+    if (scale_of(size) > scale_of(best)) best = size;
+  }
+  return best;
 }
 
 std::string darknet_cfg_with_threshold(std::string_view cfg, double threshold) {

@@ -36,6 +36,9 @@ class NetworkReader {
   NetworkReader(Size input, PersonClass person, int darknet_classes = 0)
       : input_(input), person_(person), darknet_classes_(darknet_classes) {}
 
+  // Of the pictures from now on, where a network takes several sizes.
+  void set_input(Size input) { input_ = input; }
+
   // Appends the persons with a score (0 to 1) of at least `threshold`: boxes in pixels of the input. Returns nullopt, or
   // the end of a sentence: "its output 1 x 6 x 300 cannot be read: ...".
   std::optional<std::string> read(std::span<const NetworkOutput> outputs, double threshold,
