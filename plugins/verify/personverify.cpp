@@ -57,7 +57,7 @@
  * properties `mean` and `scale`: one number, or three for its planes in their order.
  *
  * No model comes with Cerberus. `pipelines/setup person` fetches yolo-fastest-1.1_body on request, 1.2 MB that find people
- * at a fifth of the cost of the detectors above: `model=yolo-fastest-1.1_body.weights`. A name without a folder is also
+ * at a third of the cost of the detectors above: `model=yolo-fastest-1.1_body.weights`. A name without a folder is also
  * looked for in `cerberus/models` below the user's and the system's folders of data (`~/.local/share`,
  * `/usr/local/share`). Each model has its licence: YOLO 5, 8, 10 and 11 are AGPL-3.0 (Ultralytics also sells others), YOLO 7
  * is GPL-3.0, YOLOX and NanoDet are Apache-2.0, darknet's own and Yolo-Fastest are free for any use, SSD of torchvision is

@@ -20,8 +20,8 @@ struct EvidenceParameters {
   double missed = 0.5;  // that a look takes from a track which it does not show
   // Evidence against a track that a look finds at rest in a calm scene: less than a sure look gives at any rate.
   double resting = 0.3;
-  // Evidence a second, of own motion inside the box and of a motion region.
-  double moving = 1.2, region = 3.2;
+  double moving = 1.2;  // evidence a second, of own motion inside the box
+  // A motion track at the same place leaves no doubt: the ceiling.
   double publish = 1.5, ceiling = 3;
 
   double gate = 0.25;  // intersection over union of a track and its observation, at least

@@ -199,7 +199,7 @@ void EvidenceTracker::match_motion(std::span<const Track> motion) {
   pair_by_overlap(present, box_of, [&](std::size_t i, std::size_t j, double overlap) {
     EvidenceTrack& t = tracks_[i];
     t.motion_id = motion[j].id;
-    t.add(p_.region * frame_.seconds, p_);
+    t.evidence = p_.ceiling;
     t.since_motion = t.unseen = 0;
     used_[j] = 1;
     if (overlap >= (looks_enclose_ ? p_.adopt_enclosing : p_.adopt)) mirror(t, motion[j]);
@@ -231,7 +231,7 @@ void EvidenceTracker::take_motion(std::span<const Track> motion) {
     const auto found = std::ranges::find(motion, t.motion_id, &Track::id);
     if (found == motion.end()) return true;
     mirror(t, *found);
-    if (found->state == TrackState::seen) t.add(p_.region * frame_.seconds, p_);
+    if (found->state == TrackState::seen) t.evidence = p_.ceiling;
     used_[static_cast<std::size_t>(found - motion.begin())] = 1;
     return false;
   });
