@@ -47,7 +47,8 @@ def start(line):
 
 
 def launch_file(name, *options, **variables):
-    return start([TOP / 'pipelines' / 'run', *options, name, *(f'{key}={value}' for key, value in variables.items())])
+    """By motion alone: live, the frame from which on a look of a people detector counts differs from run to run."""
+    return start([TOP / 'pipelines' / 'run', *options, name, 'PERSONS=', *(f'{key}={value}' for key, value in variables.items())])
 
 
 def ended(process):
@@ -321,6 +322,8 @@ encoder = "SHOWN"
 name = "yard"
 kind = "file"
 file = "FILE"
+[camera.persons]
+enabled = false
 [camera.recorder]
 folder = "FOLDER"
 encoder = "RECORDED"
@@ -468,7 +471,7 @@ def watch_page(program, file):
     """A cerberusd that shows this video as a camera's, and a browser's socket to its page."""
     port = free_port()
     pathlib.Path('robot.toml').write_text(f'state-folder = "state"\n[page]\nport = {port}\n[[camera]]\n'
-                                          f'name = "yard"\nkind = "file"\nfile = "{file}"\n', 'ascii')
+                                          f'name = "yard"\nkind = "file"\nfile = "{file}"\n[camera.persons]\nenabled = false\n', 'ascii')
     server = start([program, 'robot.toml'])
     line = server.stdout.readline()
     while 'One-time password' not in line:
