@@ -43,8 +43,8 @@ namespace {
 
 // A change that costs more than this is no accident. Seen: .51, .69 and .35; 5 identities a minute, .69 soon.
 constexpr Floors kMotionAlone{.49, .66, .32, 8, .62};
-// Seen with HOG: .62, .73, .36; 2 identities a minute, .81 soon.
-constexpr Floors kWithPersons{.59, .70, .31, 4, .75};
+// Seen with HOG: .63, .74, .37; 1.3 identities a minute, .76 soon.
+constexpr Floors kWithPersons{.59, .70, .31, 4, .7};
 constexpr double kCalm = .8;  // share of the corners; see SceneCalm
 
 struct Options {
