@@ -542,6 +542,81 @@ START_TEST(a_tiny_component_is_dropped_over_a_young_background) {
 }
 END_TEST
 
+// The old object was 160 on the right, the new one is 200 on the left: half of the outline is an edge of the frame,
+// half one of the background.
+void half_and_half(Scene& s, const Rect& r) {
+  Scene::paint(s.frame, {r.x, r.y, r.width / 2, r.height}, 200);
+  Scene::paint(s.background, {r.x + r.width / 2, r.y, r.width - r.width / 2, r.height}, 160);
+}
+
+constexpr Rect kWalker{170, 80, 30, 80};  // forty pixels from kPerson
+
+START_TEST(a_fragment_of_a_ghost_is_absorbed) {
+  // A component that came in at the left edge stays for its second at rest, and so does one at rest while no object
+  // leaves.
+  struct Case {
+    bool from_outside, somebody_leaves, kept;
+  };
+  for (const Case& c : {Case{false, true, false}, {true, true, true}, {false, false, true}}) {
+    Scene s(255);
+    s.classify();  // the camera stands, the frame fits the background
+    half_and_half(s, kPerson);
+    Scene::paint(s.frame, kWalker, 200);
+    if (c.from_outside) s.differs({0, 80, 100, 80}, 0);
+    s.differs(kPerson, 0);
+    if (c.somebody_leaves) s.differs(kWalker, 0);
+    s.classify();
+    s.mask.fill_bytes(0);
+    s.differs(kPerson, 10);
+    if (c.somebody_leaves) s.differs(kWalker, 0);
+    s.classify();
+    ck_assert_int_eq(count(s.mask, kPerson), c.kept ? all(kPerson) : 0);
+    ck_assert_int_eq(count(s.absorb, kPerson), c.kept ? 0 : all(kPerson));
+    ck_assert_int_eq(count(s.mask, kWalker), c.somebody_leaves ? all(kWalker) : 0);
+  }
+}
+END_TEST
+
+// Even with a certain outline: an eighth of the object that leaves is 300 pixels.
+START_TEST(a_small_component_beside_a_leaving_object_is_a_fragment_of_its_ghost) {
+  for (const int side : {17, 18}) {
+    const Rect piece{120, 100, side, side};
+    Scene s(255);
+    s.classify();
+    for (const int since : {0, 10}) {
+      s.mask.fill_bytes(0);
+      for (const Rect& r : {piece, kWalker}) Scene::paint(s.frame, r, 200);
+      s.differs(piece, since);
+      s.differs(kWalker, 0);
+      s.classify();
+    }
+    ck_assert_int_eq(count(s.mask, piece), side < 18 ? 0 : all(piece));
+    ck_assert_int_eq(count(s.absorb, piece), side < 18 ? all(piece) : 0);
+  }
+}
+END_TEST
+
+// So many components are rain, and the search for ghosts would take too long. Two components and specks.
+START_TEST(in_clutter_ghosts_are_not_searched) {
+  constexpr Rect kPlace{120, 100, 17, 17};
+  for (const int components : {2, 512, 513}) {
+    Scene s(255, {1280, 960});
+    s.classify();
+    for (const int since : {0, 10}) {
+      s.mask.fill_bytes(0);
+      for (int i = 2; i < components; ++i) s.differs({700 + 20 * (i % 25), 10 + 30 * (i / 25), 2, 2}, 0);
+      for (const Rect& r : {kPlace, kWalker}) Scene::paint(s.frame, r, 200);
+      s.differs(kPlace, since);
+      s.differs(kWalker, 0);
+      s.classify();
+    }
+    ck_assert_int_eq(count(s.mask, kPlace), components > 512 ? all(kPlace) : 0);
+    ck_assert_int_eq(count(s.absorb, kPlace), components > 512 ? 0 : all(kPlace));
+    ck_assert_int_eq(count(s.mask, kWalker), all(kWalker));
+  }
+}
+END_TEST
+
 // Six streaks a frame, each time elsewhere, before a camera that then moves for some frames and stands again.
 START_TEST(what_has_flashed_before_the_camera_moved_is_forgotten) {
   for (const int moved : {0, 2, 3, 10}) {
@@ -586,5 +661,8 @@ int main() {
                      the_boundary_of_the_visible_background_is_no_edge,
                      two_people_stay_two,
                      a_tiny_component_is_dropped_over_a_young_background,
+                     a_small_component_beside_a_leaving_object_is_a_fragment_of_its_ghost,
+                     a_fragment_of_a_ghost_is_absorbed,
+                     in_clutter_ghosts_are_not_searched,
                      what_has_flashed_before_the_camera_moved_is_forgotten});
 }

@@ -24,8 +24,8 @@ std::string values_of(DetectorSettings settings) {
   const cerberus::vision::ForegroundMechanisms& m = settings.numbers.mechanisms;
   const auto* c = &m.components;
   for (const bool on :
-       {m.light, m.alignment, m.mosaic, m.motion_blur, c->flashes, c->was_empty, c->sides_go_on,
-        c->resting_ghosts, c->merge_neighbours, c->join_fragments, settings.camera_motion,
+       {m.light, m.alignment, m.mosaic, m.motion_blur, c->flashes, c->was_empty, c->sides_go_on, c->origins,
+        c->find_ghosts, c->resting_ghosts, c->merge_neighbours, c->join_fragments, settings.camera_motion,
         settings.options.burnt_in, settings.options.regions.people,
         settings.options.foreground.background_model, settings.options.foreground.noise_floor})
     all += on ? '1' : '0';

@@ -2,7 +2,9 @@
 #include "vision/components/components.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 
 #include "vision/components/component_sides.h"
@@ -21,6 +23,11 @@ constexpr struct Parameters {
       0.2;              // of one that was background before, at the picture's edge: its object may have left
   int least_moved = 4;  // pixels: fewer are noise
   int shake = 3;        // frames within which a shaken camera has not moved away from what it saw
+  int contrast = 6;     // grey levels of an edge: the comparison's limit for noise
+  double certain =
+      5;  // times as many outline pixels are edges of the frame only as of the background only: an object
+  double certain_share = 0.1;      // of the outline that is an edge of the frame only, of a certain object
+  double least_ghost = 1 / 8.0;    // of an object's area that its ghost has, and the other way round
   double least_area = 1 / 1280.0;  // of the picture: the outline of a smaller component is no evidence
 
   // Neighbours. Gaps are shares of the taller one's height.
@@ -54,15 +61,17 @@ void ForegroundComponents::preallocate(Size picture) {
   labeller_.preallocate(picture);
   evidence_.reserve(labeller_.limits().components);
   flashes_.preallocate(picture, labeller_.limits().components);
+  origins_.preallocate(picture);
   resting_ghosts_.preallocate(picture);
 }
 
 void ForegroundComponents::reset() {
   flashes_.reset();
+  origins_.reset();
   moved_ = kParameters.shake;
 }
 
-void ForegroundComponents::measure(const ComponentInput& input, const FrameWindows& windows) {
+void ForegroundComponents::measure(const ComponentInput& input, const FrameWindows& windows, BitView mask) {
   const int w = input.frame.width;
   // A background that had to be registered is less reliable: only present motion counts.
   const int recent_window = input.still ? windows.recent : windows.moving;
@@ -89,7 +98,37 @@ void ForegroundComponents::measure(const ComponentInput& input, const FrameWindo
     };
     if (r.first >= 2) contrast(r.first - 2, std::min(r.first + 1, w - 1));
     if (r.end + 1 < w) contrast(r.end + 1, std::max(r.end - 2, 0));
+    if (!input.still) continue;
+    measure_edges(input, r, mask, evidence);
+    origins_.add_overlap(r, evidence.overlap);
   }
+}
+
+void ForegroundComponents::measure_edges(const ComponentInput& input, const Run& r, BitView mask,
+                                         Evidence& evidence) const {
+  const GrayView &f = input.frame, &b = input.background;
+  const auto across = [&](int x_out, int y_out, int x_in, int y_in) {
+    const int in_frame = std::abs(f.at(x_out, y_out) - f.at(x_in, y_in));
+    const int in_background = std::abs(b.at(x_out, y_out) - b.at(x_in, y_in));
+    evidence.frame_only += in_frame > kParameters.contrast && in_frame > 2 * in_background;
+    evidence.background_only += in_background > kParameters.contrast && in_background > 2 * in_frame;
+    ++evidence.places;
+  };
+  const int w = f.width, h = f.height, y = r.row;
+  if (r.first >= 2) across(r.first - 2, y, std::min(r.first + 1, w - 1), y);
+  if (r.end + 1 < w) across(r.end + 1, y, std::max(r.end - 2, 0), y);
+  const auto along = [&](int beyond, int y_out, int y_in) {
+    if (y_out < 0 || y_in < 0 || y_out >= h || y_in >= h) return;
+    const std::uint64_t *row = mask.row(y), *next = mask.row(beyond);
+    for_words(r.first, r.end, [&](int word, std::uint64_t ones) {
+      for (std::uint64_t left = row[word] & ~next[word] & ones; left; left &= left - 1) {
+        const int x = 64 * word + std::countr_zero(left);
+        across(x, y_out, x, y_in);
+      }
+    });
+  };
+  along(y - 1, y - 2, y + 1);
+  along(y + 1, y + 2, y - 1);
 }
 
 // Decides about one component by its own evidence.
@@ -99,6 +138,11 @@ void ForegroundComponents::decide(const ComponentInput& input, const Component& 
   const double area = c.area;
   const bool young = evidence.young_pixels > area / 2, newest = evidence.newest_pixels > area / 2;
   const bool at_edge = c.left == 0 || c.top == 0 || c.right == size.width || c.bottom == size.height;
+  const ComponentOrigins::Overlap& before = evidence.overlap;
+  const bool inside =
+      input.mechanisms.origins && input.still &&
+      (before.differed ? 2 * before.inside > before.differed : young || (moved_ == 0 && !at_edge));
+  evidence.origin = inside ? ComponentOrigins::Origin::inside : ComponentOrigins::Origin::outside;
   evidence.object = evidence.contrast.is_object();
   evidence.ghost = evidence.contrast.is_ghost();
   // Motion shows at outlines first. Of a large even object a rim as long as its outline is enough.
@@ -123,22 +167,60 @@ void ForegroundComponents::decide(const ComponentInput& input, const Component& 
                   (evidence.object || !rests) && !(input.registered && was_empty);
 }
 
+// The model shows an object that has stood there since the model's start. When the object leaves, its ghost stays. A
+// component at rest is a ghost if another one of the same origin moves nearby, unless its outline is certain. The
+// outline of a ghost's fragment alone is weak: it ends where the object and the background behind it happen to be
+// alike. That of a small fragment is no evidence.
+void ForegroundComponents::find_ghosts() {
+  const Parameters& p = kParameters;
+  const auto components = labeller_.components();
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    Evidence& evidence = evidence_[i];
+    const Component& a = components[i];
+    const bool newest = 2 * evidence.newest_pixels > static_cast<int>(a.area);
+    const bool certain =
+        evidence.object && !newest &&
+        evidence.frame_only > p.certain * evidence.background_only + p.certain_share * evidence.places;
+    if (evidence.moving || evidence.origin != ComponentOrigins::Origin::inside) continue;
+    for (std::size_t j = 0; j < components.size(); ++j) {
+      const Evidence& other = evidence_[j];
+      if (!other.moved_recently || !other.moving || other.ghost ||
+          other.origin != ComponentOrigins::Origin::inside)
+        continue;
+      const Component& b = components[j];
+      if (certain && a.area >= p.least_ghost * b.area) continue;
+      if (b.area > p.least_ghost * a.area && are_within(std::max(a.height(), b.height()), a, b)) {
+        evidence.doubtful = true, evidence.kept = false;
+        break;
+      }
+    }
+  }
+}
+
 bool ForegroundComponents::classify(const ComponentInput& input, const FrameWindows& windows,
                                     MutableBitView mask, MutableBitView absorb) {
   labeller_.find(mask, input.frame.width);
   const auto components = labeller_.components();
   found_ = components.size();
   evidence_.assign(components.size(), {});
-  if (!input.still && ++moved_ == kParameters.shake) flashes_.reset();
-  measure(input, windows);
+  if (!input.still && ++moved_ == kParameters.shake) {
+    origins_.reset();
+    flashes_.reset();
+  }
+  measure(input, windows, mask);
   for (std::size_t i = 0; i < components.size(); ++i) decide(input, components[i], evidence_[i]);
   if (input.is_aligned() && input.mechanisms.sides_go_on) doubt_edges(input, mask);
   if (input.mechanisms.flashes && input.still) remove_flashes(input, windows, mask);
+  if (input.still) {
+    if (input.mechanisms.find_ghosts && components.size() <= kParameters.most_components) find_ghosts();
+    for (const Run& r : labeller_.runs()) origins_.record(r, evidence_[r.component].origin);
+  }
   bool young_objects = false;
   for (std::size_t i = 0; i < components.size(); ++i)
     young_objects = young_objects || (evidence_[i].kept &&
                                       2 * evidence_[i].young_pixels > static_cast<int>(components[i].area));
   absorb_rest(input, windows, absorb);
+  if (input.still) origins_.step(mask, absorb);
   for (const Run& r : labeller_.runs()) {
     const Evidence& evidence = evidence_[r.component];
     if (!evidence.kept && (!(input.still && evidence.object) || evidence.doubtful))
@@ -149,6 +231,7 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
     resting_ghosts_.remove(
         {input.frame, input.background, input.quiet, input.still ? GrayView{} : input.age, input.columns()},
         windows.recent, labeller_, mask, absorb);
+  origins_.forget(absorb);
   if (input.still) moved_ = 0;
   return young_objects;
 }
@@ -259,7 +342,7 @@ void ForegroundComponents::join_fragments(const ComponentInput& input, MutableBi
 }
 
 std::size_t ForegroundComponents::bytes() const {
-  return labeller_.bytes() + evidence_.capacity() * sizeof(Evidence) + flashes_.bytes() +
+  return labeller_.bytes() + evidence_.capacity() * sizeof(Evidence) + flashes_.bytes() + origins_.bytes() +
          resting_ghosts_.bytes();
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Which connected components of the pixels that differ from the background model are objects, and which are ghosts:
-// places that an object left. Evidence: how much of a component moved lately, and whether its outline is an edge of the
-// frame or of the background.
+// places that an object left. Evidence: how much of a component moved lately, whether its outline is an edge of the
+// frame or of the background, and whether it came from outside the picture.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "vision/components/component_origins.h"
 #include "vision/components/flashes.h"
 #include "vision/components/outline_contrast.h"
 #include "vision/components/resting_ghosts.h"
@@ -43,6 +44,8 @@ struct ComponentMechanisms {
   bool flashes = true;           // flashes.h
   bool was_empty = true;         // what left the picture moves no more: decide()
   bool sides_go_on = true;       // component_sides.h
+  bool origins = true;           // component_origins.h
+  bool find_ghosts = true;       // by components of the same origin
   bool resting_ghosts = true;    // resting_ghosts.h
   bool merge_neighbours = true;  // of a young background
   bool join_fragments = true;    // fragment_joining.h
@@ -93,6 +96,10 @@ class ForegroundComponents {
     int young_pixels = 0, newest_pixels = 0;   // pixels learnt for less than the windows `young` and `recent`
     int outline = 0;                           // outline pixels to the left and right
     OutlineContrast contrast;                  // of those that lie inside the frame and the background
+    int places = 0;                            // outline pixels on all four sides
+    int frame_only = 0, background_only = 0;   // those that are an edge of one of the two only
+    ComponentOrigins::Overlap overlap;
+    ComponentOrigins::Origin origin = ComponentOrigins::Origin::outside;
     bool moved_recently = false, moving = false;
     bool object = false, ghost = false;  // decided by the outline; both false: undecided
     bool doubtful = false;               // stays only while it moves
@@ -101,15 +108,18 @@ class ForegroundComponents {
     bool merged = false;                 // with a neighbour
     bool fragment = false;               // of a larger neighbour
   };
-  void measure(const ComponentInput& input, const FrameWindows& windows);
+  void measure(const ComponentInput& input, const FrameWindows& windows, BitView mask);
+  void measure_edges(const ComponentInput& input, const Run& run, BitView mask, Evidence& evidence) const;
   void decide(const ComponentInput& input, const Component& component, Evidence& evidence) const;
   void remove_flashes(const ComponentInput& input, const FrameWindows& windows, BitView mask);
   void doubt_edges(const ComponentInput& input, BitView mask);
+  void find_ghosts();
   void absorb_rest(const ComponentInput& input, const FrameWindows& windows, MutableBitView absorb) const;
 
   Labeller labeller_;
   std::vector<Evidence> evidence_;  // by component
   Flashes flashes_;
+  ComponentOrigins origins_;
   RestingGhosts resting_ghosts_;
   std::size_t found_ = 0;  // components that classify() found, before any was dropped
   int moved_ =
