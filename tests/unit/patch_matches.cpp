@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Patches found again: where, which guess they like, how many follow a motion.
+// Patches found again: where, which guess they like, how many follow a motion, what noise they leave.
 #include "vision/ego_motion/patch_matches.h"
 
 #include <check.h>
@@ -20,10 +20,10 @@ KeptPyramid pyramid_of(Image<std::uint8_t> image) {
   return {std::move(image), 4};
 }
 
-PatchSites sites_of(const Pyramid& pyramid) {
+PatchSites sites_of(const Pyramid& pyramid, double noise = 1) {
   PatchSites sites;
   Image<std::int32_t> scratch;
-  sites.choose(pyramid, scratch);
+  sites.choose(pyramid, noise, scratch);
   return sites;
 }
 
@@ -77,8 +77,26 @@ START_TEST(the_share_is_of_the_patches_that_follow) {
 }
 END_TEST
 
+START_TEST(noise_is_what_the_matches_leave) {
+  for (const double sigma : {2.0, 5.0}) {
+    std::mt19937 random(4);
+    Image<std::uint8_t> a = picture(Scene(4)), b = picture(Scene(4));
+    add_noise(a.view(), sigma, sigma, random);
+    add_noise(b.view(), sigma, sigma, random);
+    const KeptPyramid before = pyramid_of(std::move(a)), after = pyramid_of(std::move(b));
+    const PatchSites sites = sites_of(before, sigma);
+    PatchMatches matches(sites);
+    ck_assert(!matches.noise());
+    matches.follow(before, after, 0, Transform{});
+    ck_assert(matches.noise().has_value());
+    ck_assert_double_eq_tol(*matches.noise(), sigma, 0.35 * sigma);  // of the calmer ones: a little low
+  }
+}
+END_TEST
+
 int main() {
-  return run_suite("patch_matches", {patches_are_found_where_they_went_on_every_level,
-                                     of_several_guesses_the_right_one_is_found_and_the_first_in_doubt,
-                                     the_share_is_of_the_patches_that_follow});
+  return run_suite("patch_matches",
+                   {patches_are_found_where_they_went_on_every_level,
+                    of_several_guesses_the_right_one_is_found_and_the_first_in_doubt,
+                    the_share_is_of_the_patches_that_follow, noise_is_what_the_matches_leave});
 }

@@ -67,7 +67,7 @@ END_TEST
 START_TEST(patches_lie_all_over_a_textured_picture_and_nowhere_in_a_flat_one) {
   Image<std::int32_t> scratch;
   PatchSites sites;
-  sites.choose(pyramid_of(Scene(1), {}, {320, 240}), scratch);
+  sites.choose(pyramid_of(Scene(1), {}, {320, 240}), 1, scratch);
   ck_assert_int_ge(sites.count, 180);
   std::array<int, MotionSamples::kRegions> regions{};
   for (int i = 0; i < sites.count; ++i) {
@@ -77,7 +77,7 @@ START_TEST(patches_lie_all_over_a_textured_picture_and_nowhere_in_a_flat_one) {
     ++regions[s.region];
   }
   for (const int n : regions) ck_assert_int_ge(n, 8);
-  sites.choose(pyramid_of(Scene(1, 0.5), {}, {320, 240}), scratch);
+  sites.choose(pyramid_of(Scene(1, 0.5), {}, {320, 240}), 1, scratch);
   ck_assert_int_eq(sites.count, 0);
 }
 END_TEST
@@ -86,12 +86,12 @@ START_TEST(noise_alone_is_not_texture) {
   std::mt19937 random(2);
   Image<std::uint8_t> image({320, 240});
   for (int y = 0; y < 240; ++y) std::memset(image.view().row(y), 120, 320);
-  add_noise(image.view(), 4, 4, random);
+  add_noise(image.view(), 6, 6, random);
   Pyramid pyramid;
   pyramid.borrow(image.view(), 3);
   Image<std::int32_t> scratch;
   PatchSites sites;
-  sites.choose(pyramid, scratch);
+  sites.choose(pyramid, 6, scratch);
   ck_assert_int_le(sites.count, 4);
 }
 END_TEST
@@ -104,7 +104,7 @@ START_TEST(a_patch_is_chosen_where_there_is_a_corner_not_an_edge) {
   pyramid.borrow(image.view(), 1);
   Image<std::int32_t> scratch;
   PatchSites sites;
-  sites.choose(pyramid, scratch);
+  sites.choose(pyramid, 0, scratch);
   ck_assert_int_eq(sites.count, 1);
   ck_assert_float_eq(sites.site[0].x, 8.5f);
   ck_assert_float_eq(sites.site[0].y, 8.5f);
@@ -116,7 +116,7 @@ START_TEST(patches_are_followed_to_a_fraction_of_a_pixel_under_any_light) {
   const KeptPyramid earlier = pyramid_of(Scene(3), {}, size);
   Image<std::int32_t> scratch;
   PatchSites sites;
-  sites.choose(earlier, scratch);
+  sites.choose(earlier, 1, scratch);
   ck_assert_int_ge(sites.count, 40);
   for (const double shift : {0.0, 0.3, -0.5, 1.2, -1.8})
     for (const double gain : {1.0, 0.5, 1.5}) {

@@ -61,6 +61,7 @@ struct CameraMotion::State {
   PatchMatches::Share share;  // of the fit, on the level where it is highest
   Transform last;             // frame k-2 to k-1
   LensBend lens;
+  double noise = 1;  // standard deviation of a pixel
   bool still = false;
   // Remaining frames for which a moving camera is assumed to keep moving although the picture has too few matches.
   int on_its_way = 0;
@@ -83,6 +84,7 @@ struct CameraMotion::State {
   std::optional<MotionFit> standing(const MotionSamples& samples, const MotionFit& fit) const;
   bool is_known(const MotionSamples& samples, const MotionFit& fit) const;
   bool leaves_behind(const MotionFit& fit) const;
+  void measure_noise(const PatchMatches& matches);
   void next_reference(bool keep);
 };
 
@@ -107,7 +109,7 @@ std::size_t CameraMotion::bytes() const {
 
 void CameraMotion::State::next_reference(bool keep) {
   if (keep && ++reference_age < kParameters.reference_age) return;
-  sites.choose(current, scratch, excluded);
+  sites.choose(current, noise, scratch, excluded);
   reference.take(current);
   std::swap(reference_relief, current_relief);
   reference_age = 0;
@@ -142,6 +144,10 @@ Transform CameraMotion::State::first_guess(PatchMatches& matches, int level,
 void CameraMotion::State::count_followers(const PatchMatches& matches, const MotionFit& fit) {
   const PatchMatches::Share of = matches.share_of(fit);
   share = {std::max(share.all, of.all), std::max(share.well, of.well)};
+}
+
+void CameraMotion::State::measure_noise(const PatchMatches& matches) {
+  if (const auto measured = matches.noise()) noise += kParameters.noise_share * (*measured - noise);
 }
 
 MotionFit CameraMotion::State::fit_on(int level, const MotionSamples& samples,
@@ -193,13 +199,17 @@ PatchMatches CameraMotion::State::found_in_place() const {
   return matches;
 }
 
-// Returns the rating of no motion if the camera stands, else nullopt.
+// Returns the rating of no motion if the camera stands, else nullopt. For a camera that was still, the patches are
+// matched again in place before a larger motion is accepted: repeated texture, such as floor boards, matches at
+// several places and seems to follow a person walking over it.
 std::optional<MotionFit> CameraMotion::State::standing(const MotionSamples& samples,
                                                        const MotionFit& fit) const {
   const CameraMotionParameters& q = kParameters;
   if (options.model == MotionModel::none) return rate_motion(samples, {});
   const double motion = mean_motion(fit.transform, reference.size());
-  const MotionFit none = rate_motion(samples, {});
+  if (share.all > q.certain_share && motion > q.certain_motion) return std::nullopt;
+  const bool anew = still && motion > q.large_motion;
+  const MotionFit none = anew ? rate_motion(found_in_place().samples(), {}) : rate_motion(samples, {});
   const auto stands = [&] {
     if (motion < (still ? q.still_motion : q.least_motion)) return true;
     // For a large motion the regions that agree are compared: if a large object moves, the rest of the picture supports
@@ -273,6 +283,7 @@ std::optional<CameraMotionResult> CameraMotion::State::confirm_still() {
   if (share.all < kParameters.majority || mean_motion(motion, size) >= kParameters.still_motion ||
       !is_known(matches.samples(), fit))
     return std::nullopt;
+  measure_noise(matches);
   CameraMotionResult result;
   result.corners = matches.corners({}, size);
   next_reference(true);
@@ -319,6 +330,7 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
     count_followers(matches, fit);
   }
   if (is_cut(shifts[0])) return start_scene();
+  measure_noise(matches);
   const bool known = is_known(matches.samples(), fit);
   if (!known) fit = best_without(matches.samples(), prior);
   const bool lost = !known && !prior && on_its_way > 0;

@@ -10,6 +10,7 @@ namespace cerberus::vision {
 struct CameraMotionParameters {
   int least_side = 16;        // pixels: smaller pictures are not estimated
   int reference_age = 16;     // frames after which the reference of a still camera is renewed
+  double noise_share = 0.1;   // of a frame's measured noise in the running mean
   double majority = 0.6;      // share of the patches that no other motion can outvote
   double bent = 0.2;          // pixels: a smaller bend of the prior is neglected
   double bent_at_once = 1;    // pixels of the level: the bend of a smaller turn is negligible there
@@ -26,14 +27,16 @@ struct CameraMotionParameters {
   double new_contrast = 3;      // times more contrast than a reference without texture
 
   // A camera that stands. Motions are pixels, RMS over the picture.
-  double still_motion = 0.2;  // a still camera remains still below it,
-  double least_motion = 0.1;  // and any camera stands below it
-  double large_motion = 1;    // beyond it the support of no motion decides alone
-  double stays = 0.6;         // of the motion's support that no motion needs for a still camera,
-  double stops = 0.85;        // and for a moving one
-  double leaves = 0.5;        // of the patches that a still camera's small motion needs
-  double as_supported = 0.9;  // of the motion's support: no motion explains the samples as well,
-  double worth = 12;          // unless its cost is so much higher, in unexplained costs
+  double still_motion = 0.2;    // a still camera remains still below it,
+  double least_motion = 0.1;    // and any camera stands below it
+  double large_motion = 1;      // beyond it the support of no motion decides alone
+  double certain_share = 0.9;   // of the patches that follow a motion beyond
+  double certain_motion = 0.5;  // this one: it is the camera's
+  double stays = 0.6;           // of the motion's support that no motion needs for a still camera,
+  double stops = 0.85;          // and for a moving one
+  double leaves = 0.5;          // of the patches that a still camera's small motion needs
+  double as_supported = 0.9;    // of the motion's support: no motion explains the samples as well,
+  double worth = 12;            // unless its cost is so much higher, in unexplained costs
 
   // Parts of the picture (of MotionSamples::kRegions) that must follow.
   int few_parts = 5, many_parts = 8;

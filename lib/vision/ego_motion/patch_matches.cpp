@@ -25,6 +25,7 @@ constexpr struct Parameters {
   float ridge = 0.01f;          // of the gradient sums: stiffness along an edge
   float least_noise = 0.5f;     // grey levels squared
   float half_evidence = 0.25f;  // pixels squared of the level: variance of a sample that counts half
+  int noise_rank = 3;           // 1/n of the patches has less noise than the picture's.
   // Corners of the scene; pixels of a picture 320 wide. measured on the development sequences: by all patches that were
   // found a pan is no calmer than parallax is (medians of calm .65 and .72), by these it is (.83 and .74).
   float sure = 0.1f;  // standard deviation of its place; and at least
@@ -155,6 +156,17 @@ SceneCorners PatchMatches::corners(const Transform& motion, Size picture) const 
                                        in_256ths(samples_.y[i], picture.height), fits};
   }
   return corners;
+}
+
+std::optional<double> PatchMatches::noise() const {
+  std::array<float, MotionSamples::kMax> variances;
+  int count = 0;
+  for (int i = 0; i < sites_.count; ++i)
+    if (matches_[i].correlation >= kParameters.found) variances[count++] = matches_[i].noise2;
+  if (count < kLeast) return std::nullopt;
+  const int rank = count / kParameters.noise_rank;
+  std::nth_element(variances.begin(), variances.begin() + rank, variances.begin() + count);
+  return std::sqrt(0.5 * variances[rank]);  // the residual contains the noise of both pictures
 }
 
 }  // namespace cerberus::vision

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include "vision/ego_motion/patches.h"
@@ -40,6 +41,9 @@ class PatchMatches {
   // Returns the patches whose place is sure, as corners of the scene: those with the lowest variance, whether or not they
   // follow a motion.
   SceneCorners corners(const Transform& motion, Size picture) const;
+  // Returns the standard deviation of a pixel in grey levels, from the residuals of the third with the lowest ones;
+  // nullopt with too few matches.
+  std::optional<double> noise() const;
 
   static constexpr int kLeast = 8;  // patches: fewer do not determine a motion of the whole picture
 

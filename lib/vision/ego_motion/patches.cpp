@@ -23,6 +23,7 @@ constexpr struct Parameters {
   int least_cells = 4;  // in either direction of such a picture
   int most_cells_x = 16, most_cells_y = 12;
   double least_gradient = 16.0;  // grey levels squared a pixel: texture
+  double noise_gradient = 3;     // times that of noise, which has 2 noise^2 a pixel (not halved differences)
   double edge =
       0.05;  // of the larger gradient in a patch's score: prefers corners to edges, and edges to no texture
   // Matching.
@@ -44,7 +45,8 @@ bool touches(std::span<const Box> boxes, double x, double y, double side) {
 
 }  // namespace
 
-void PatchSites::choose(const Pyramid& pyramid, Image<std::int32_t>& scratch, std::span<const Box> excluded) {
+void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t>& scratch,
+                        std::span<const Box> excluded) {
   const Parameters& q = kParameters;
   count = 0;
   const Size size = pyramid.size();
@@ -67,7 +69,9 @@ void PatchSites::choose(const Pyramid& pyramid, Image<std::int32_t>& scratch, st
   constexpr int kSide = PatchFollower::kSide;
   kept_.resize({kSide * kSide, cells_x * cells_y});
   int known = 0;  // rows of blocks
-  const double least = kPatch * kPatch * q.least_gradient;
+  const double pixel_noise = noise / (1 << level);
+  const double least =
+      kPatch * kPatch * std::max(q.least_gradient, q.noise_gradient * 2 * pixel_noise * pixel_noise);
   const double scale = 1 << level;
   const auto centre = [&](int block) { return (kMargin + (block + 1) * kBlock) * scale - 0.5; };
   for (int cy = 0; cy < cells_y; ++cy) {

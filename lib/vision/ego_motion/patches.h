@@ -67,9 +67,10 @@ struct PatchSites {
   int count = 0;
   std::array<PatchSite, MotionSamples::kMax> site;
 
-  // Allocates only when the size changes. excluded: pixels of level 0 that show no scene (burnt_in.h); no patch touches
-  // them.
-  void choose(const Pyramid& pyramid, Image<std::int32_t>& scratch, std::span<const Box> excluded = {});
+  // noise: standard deviation of a pixel of level 0, grey levels; the texture of a patch must exceed it. Allocates only
+  // when the size changes. excluded: pixels of level 0 that show no scene (burnt_in.h); no patch touches them.
+  void choose(const Pyramid& pyramid, double noise, Image<std::int32_t>& scratch,
+              std::span<const Box> excluded = {});
   // Drops the patches that touch `excluded`.
   void exclude(std::span<const Box> excluded);
   // Returns the follower on level 0. The pixels that it needs were copied: the picture may be gone.
