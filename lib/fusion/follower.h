@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Selects the track to follow: the present target while it lives, else the one that the user prefers. Persons precede what
-// only moves, also as the present target. A stopped target is followed for a limited time.
+// only moves; a seen person also takes the target over from it, once a person has been there for half a second. A stopped
+// target is followed for a limited time.
 #pragma once
 
 #include <array>
@@ -33,6 +34,7 @@ class Follower {
   bool here_ = false;
   Time found_ = kLongAgo;    // last time there was a track
   Time stopped_ = kLongAgo;  // time at which the target stopped; kLongAgo: it moves
+  Time person_ = kLongAgo;   // time from which on every frame has a person; kLongAgo: this one has none
   std::array<std::uint32_t, 16>
       tired_{};  // tracks stopped for longer than hold_stopped, until they move again
   unsigned tired_next_ = 0;

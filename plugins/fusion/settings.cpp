@@ -30,10 +30,10 @@ const Property<Settings> kTable[] = {
         "Path of a rule table of your own (TOML); empty = none. A table with a gap, a contradiction or a "
         "rule "
         "that never applies is refused; given while the element runs, the old rules and their path stay"),
-    property(
-        "target", &Settings::target, target_type,
-        "Which track to follow when none is followed yet; a followed track stays the target, but persons of "
-        "personverify go before what only moves"),
+    property("target", &Settings::target, target_type,
+             "Which track to follow when none is followed yet; a followed track stays the target, but leaves "
+             "it to a "
+             "seen person of personverify where it only moves"),
     property(
         "return-delay", &Settings::return_delay,
         "Nanoseconds without any detection, from the first frame on, after which the head returns to zero; "

@@ -78,15 +78,20 @@ GST_END_TEST
 GST_START_TEST(a_verified_person_is_the_target_in_place_of_what_only_moves) {
   Rig rig(true, "target=largest");
   fail_unless_equals_int(rig.show(two(0)).target, 6);
-  GstBuffer* buffer = two(40 * kMs);
   CerberusRegion person;
   cerberus_region_init(&person);
   person.id = 7;
   person.tracked = person.person = TRUE;
   person.width = person.height = 2;
-  fail_unless(cerberus_buffer_add_region(buffer, &person));
-  fail_unless_equals_int(rig.show(buffer).target, 7);
-  fail_unless_equals_int(rig.show(two(80 * kMs)).target, 6);
+  guint32 target = 0;
+  for (int k = 1; k <= 15; ++k) {
+    GstBuffer* buffer = two(k * 40 * kMs);
+    fail_unless(cerberus_buffer_add_region(buffer, &person));
+    target = rig.show(buffer).target;
+    if (k == 1) fail_unless_equals_int(target, 6);  // it may be for a moment only
+  }
+  fail_unless_equals_int(target, 7);
+  fail_unless_equals_int(rig.show(two(640 * kMs)).target, 6);
 }
 GST_END_TEST
 
