@@ -43,6 +43,7 @@ class Scene {
  public:
   double calm = 1;
   bool still = true;
+  double seconds = kSeconds;
   double pan = 0;         // frame pixels a frame by which the wall moves
   bool encloses = false;  // EvidenceLook::encloses
 
@@ -58,7 +59,7 @@ class Scene {
       paint(picture_, {box.x / 2, box.y / 2, box.width / 2, box.height / 2}, box.x / 2, box.y / 2, 5);
     }
     EvidenceFrame f;
-    f.seconds = kSeconds;
+    f.seconds = seconds;
     f.fresh = number_++ == 0;
     f.size = kFrame;
     f.picture = picture_.view();
@@ -356,6 +357,22 @@ START_TEST(a_look_at_the_very_frame_shows_where_the_body_is_now) {
 }
 END_TEST
 
+// As of a frame that repeats another and has its time.
+START_TEST(a_frame_of_the_same_time_leaves_a_velocity_that_is_a_number) {
+  Scene scene;
+  scene.calm = 0.4, scene.still = false;
+  ck_assert(!walk(scene, 24, 4, kSure).back().empty());
+  scene.seconds = 0;
+  for (int n = 0; n < 2; ++n) {
+    const auto found = scene.frame({200 + 4 * 23});
+    ck_assert_int_eq(found.size(), 1);
+    ck_assert_double_eq_tol(found[0].velocity.x, 4 / kSeconds, 15);
+    ck_assert_double_eq_tol(found[0].velocity.y, 0, 15);
+    ck_assert(near(found[0].box, body_at(200 + 4 * 23)));
+  }
+}
+END_TEST
+
 START_TEST(an_identity_that_motion_gives_back_is_the_persons_again) {
   Scene scene;
   const auto frames = walk(scene, 24, 4, kSure);
@@ -432,6 +449,7 @@ int main() {
                     who_is_shown_once_a_second_is_published_all_the_time,
                     a_look_counts_however_late_it_is,
                     a_look_at_the_very_frame_shows_where_the_body_is_now,
+                    a_frame_of_the_same_time_leaves_a_velocity_that_is_a_number,
                     an_identity_that_motion_gives_back_is_the_persons_again,
                     after_a_reset_nothing_is_known_and_no_identity_is_given_twice,
                     the_steady_state_allocates_nothing});

@@ -56,8 +56,11 @@ void EvidenceTrack::follow(const Pyramid* before, const Pyramid& now, const Tran
   if (step) {
     height *= step->growth;
     own = {(centre.x + step->shift.x - at_rest.x) / height, (centre.y + step->shift.y - at_rest.y) / height};
-    const double gain = std::min(1.0, seconds / p.velocity_time);
-    velocity.x += gain * (own.x / seconds - velocity.x), velocity.y += gain * (own.y / seconds - velocity.y);
+    if (seconds > 0) {
+      const double gain = std::min(1.0, seconds / p.velocity_time);
+      velocity.x += gain * (own.x / seconds - velocity.x),
+          velocity.y += gain * (own.y / seconds - velocity.y);
+    }
   } else {
     height = grown;
   }
