@@ -214,6 +214,7 @@ struct State {  // streaming thread only
   cerberus::plugin::PersonLooks looks;        // of this frame; a result stays until the next one is there
   guint number = 0;                           // of the last look
   GstClockTime looked = GST_CLOCK_TIME_NONE;  // time of the frame of the look in progress
+  bool abandoned = false;                     // the worker's look is of another scene
   std::optional<bool> live;
   bool tracks = true;  // itself: no tracker downstream takes the looks
   vision::FrameHistory history{vision::FrameHistory::Parameters{.gap_seconds = kLongestGap}};
@@ -236,11 +237,20 @@ struct Private {
 CERBERUS_DEFINE_TYPE(CerberusPersonVerify, cerberus_person_verify, GstBaseTransform, GST_TYPE_BASE_TRANSFORM,
                      Private)
 
-// The result of a look in progress is of another scene.
+// The result of a look in progress is of another scene. Live the next look begins once it is there; else at this frame.
 void drop_look(State& state) {
-  if (GST_CLOCK_TIME_IS_VALID(state.looked)) state.worker.wait();
-  state.looked = GST_CLOCK_TIME_NONE;
+  if (GST_CLOCK_TIME_IS_VALID(std::exchange(state.looked, GST_CLOCK_TIME_NONE))) {
+    state.abandoned = state.live.value_or(true);
+    if (!state.abandoned) state.worker.wait();
+  }
   state.looks = {};
+}
+
+// Whether the worker has no look in progress.
+bool is_idle(State& state) {
+  if (GST_CLOCK_TIME_IS_VALID(state.looked) || (state.abandoned && !state.worker.is_done())) return false;
+  if (std::exchange(state.abandoned, false)) state.worker.wait();
+  return true;
 }
 
 void forget(State& state) {
@@ -316,6 +326,7 @@ gboolean cerberus_person_verify_stop(GstBaseTransform* transform) {
     State& state = cerberus_person_verify_self(transform)->priv->state;
     state.worker.stop();
     state.looked = GST_CLOCK_TIME_NONE;
+    state.abandoned = false;
     return TRUE;
   });
 }
@@ -398,7 +409,7 @@ void begin_look(State& state, const vision::PictureSource& source, vision::Size 
   auto period = static_cast<GstClockTime>(GST_SECOND / settings.rate);
   if (!GST_CLOCK_TIME_IS_VALID(state.next_look))
     state.next_look = now + static_cast<GstClockTime>(settings.phase * static_cast<double>(period));
-  if (GST_CLOCK_TIME_IS_VALID(state.looked) || now < state.next_look) return;
+  if (now < state.next_look || !is_idle(state)) return;
   const auto taken = static_cast<double>(state.worker.duration().count());  // by the last one
   state.worker.picture().take(source, 0, 0, size, state.worker.sees_colours());
   state.worker.begin();

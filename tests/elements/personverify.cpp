@@ -236,6 +236,55 @@ GST_START_TEST(live_no_frame_waits_and_the_result_comes_later) {
 }
 GST_END_TEST
 
+// The camera is measured no more at the frame after the one that is looked at: another scene. The shortest of ten times is
+// little where nothing waits, and nearly a whole look where the frame waits for its end.
+GST_START_TEST(live_no_frame_waits_at_a_cut_during_a_look) {
+  const auto seconds = [](Verifier& verifier, GstBuffer* in) {
+    const gint64 begun = g_get_monotonic_time();
+    gst_buffer_unref(verifier.through(in));
+    return static_cast<double>(g_get_monotonic_time() - begun) / G_USEC_PER_SEC;
+  };
+  double look = 1e9, cut = 1e9;
+  for (int n = 0; n < 10; ++n) {
+    Verifier waiting(""), live("", true);
+    gst_buffer_unref(waiting.through(scene(0, {140})));
+    look = std::min(look, seconds(waiting, scene(1, {140})));  // 40 ms later: it waits for the result
+    GstBuffer* in = scene(0, {140});
+    CerberusCameraMotion motion;
+    cerberus_camera_motion_init(&motion);
+    motion.scene_age = 1;
+    cerberus_buffer_set_camera_motion(in, &motion);
+    gst_buffer_unref(live.through(in));
+    cut = std::min(cut, seconds(live, scene(1, {140})));
+  }
+  fail_unless(cut < look / 2, "%.4f s, of %.4f s for a look", cut, look);
+}
+GST_END_TEST
+
+// The look that the cut has overtaken says nothing, and the next one begins all the same.
+GST_START_TEST(live_after_a_cut_the_detector_looks_on) {
+  Verifier verifier("", true);
+  bool person = false;
+  const gint64 patience = g_get_monotonic_time() + 60 * G_USEC_PER_SEC;
+  for (int n = 0; !person; ++n) {
+    fail_unless(g_get_monotonic_time() < patience, "no result within a minute");
+    GstBuffer* in = scene(n, {140});
+    add(in, person_track(7, 140));
+    if (n == 0) {
+      CerberusCameraMotion motion;
+      cerberus_camera_motion_init(&motion);
+      motion.scene_age = 1;
+      cerberus_buffer_set_camera_motion(in, &motion);
+    }
+    GstBuffer* out = verifier.through(in);
+    g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(out);
+    person = holds_person(regions);
+    gst_buffer_unref(out);
+    g_usleep(10 * 1000);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(regions_of_interest_of_other_elements_are_verified_too) {
   for (const bool required : {false, true}) {
     Verifier verifier(required ? "require=person" : "");
@@ -500,6 +549,8 @@ Suite* personverify_suite() {
   tcase_add_test(tests, two_runs_give_the_same_regions);
   tcase_add_test(tests, the_first_look_is_put_off_by_the_phase);
   tcase_add_test(tests, live_no_frame_waits_and_the_result_comes_later);
+  tcase_add_test(tests, live_no_frame_waits_at_a_cut_during_a_look);
+  tcase_add_test(tests, live_after_a_cut_the_detector_looks_on);
   tcase_add_test(tests, regions_of_interest_of_other_elements_are_verified_too);
   tcase_add_test(tests, a_model_of_the_users_finds_people_in_place_of_the_usual_detector);
   tcase_add_test(tests, a_car_of_a_network_with_boxes_end_to_end_is_no_person);
