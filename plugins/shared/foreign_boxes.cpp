@@ -28,6 +28,7 @@ std::optional<vision::Box> inside(double x, double y, double width, double heigh
 
 void add(double x, double y, double width, double height, vision::Size frame, const char* label,
          double confidence, std::vector<ForeignBox>& boxes) {
+  if (boxes.size() == kMostForeignBoxes) return;
   const auto box = inside(x, y, width, height, frame);
   if (box && confidence >= 0) boxes.push_back({*box, std::min(confidence, 1.0), is_person_label(label)});
 }

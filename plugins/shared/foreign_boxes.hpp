@@ -5,12 +5,16 @@
 
 #include <gst/gst.h>
 
+#include <cstddef>
 #include <vector>
 
 #include "vision/geometry/box.h"
 #include "vision/image/image.h"
 
 namespace cerberus::plugin {
+
+// More objects than a detector finds on a frame; each is compared with each.
+constexpr std::size_t kMostForeignBoxes = 256;
 
 struct ForeignBox {
   vision::Box box;        // pixels, inside the frame
@@ -19,7 +23,8 @@ struct ForeignBox {
 };
 
 // Replaces `boxes`. Boxes outside the frame and those of less than a pixel are left out, those of a negative confidence or one
-// that is no number, too. An object that is there in both forms comes twice.
+// that is no number, too, and what comes after
+// the first kMostForeignBoxes. An object that is there in both forms comes twice.
 void read_foreign_boxes(GstBuffer* buffer, vision::Size frame, std::vector<ForeignBox>& boxes);
 
 // Whether an object of this label is a person: "person", "pedestrian", "human", "people", "body", "man", "woman", "child",

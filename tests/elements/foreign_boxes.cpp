@@ -266,6 +266,27 @@ GST_START_TEST(other_labels_bad_boxes_and_our_own_regions_are_no_witness) {
 }
 GST_END_TEST
 
+// A detector that has gone mad costs no more than one that finds as many objects as there ever are.
+GST_START_TEST(of_thousands_of_boxes_on_a_frame_the_first_are_read) {
+  const scene::World world = walk();
+  for (const int before : {100, 5000}) {
+    scene::Line line("motiondetect");
+    bool person = false;
+    for (int n = 0; n < 24; ++n) {
+      GstBuffer* in = scene::grey_buffer(world, n);
+      for (int i = 0; i < before; ++i) add_region_of_interest(in, "car", 200, 20, 60, 40, .9);
+      add_region_of_interest(in, "person", world.figure_left(n), world.figure_top(), scene::kFigureWidth,
+                             scene::kFigureHeight, .9);
+      GstBuffer* out = line.through(in);
+      const Regions regions(out);
+      for (guint i = 0; i < regions.size(); ++i) person = person || regions[i].person;
+      gst_buffer_unref(out);
+    }
+    fail_unless(person == (before < 1000));
+  }
+}
+GST_END_TEST
+
 // A box that reaches beyond the picture counts for the part inside.
 GST_START_TEST(a_person_who_is_cut_by_the_edge_is_a_person) {
   scene::World world;
@@ -322,6 +343,7 @@ Suite* foreign_boxes_suite() {
   tcase_add_test(tests, boxes_follow_a_picture_that_is_converted_and_scaled_on_its_way);
   tcase_add_test(tests, each_object_is_one_object_of_a_line);
   tcase_add_test(tests, other_labels_bad_boxes_and_our_own_regions_are_no_witness);
+  tcase_add_test(tests, of_thousands_of_boxes_on_a_frame_the_first_are_read);
   tcase_add_test(tests, a_person_who_is_cut_by_the_edge_is_a_person);
   tcase_add_test(tests, messages_tell_of_the_persons_too);
   return suite;

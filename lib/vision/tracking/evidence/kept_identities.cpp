@@ -11,8 +11,8 @@ void keep_identities(std::span<const Track> before, std::span<Track> now, std::u
     double best = 0.3;
     for (const Track& each : before) {
       const double shared = intersection_over_union(each.box, track.box);
-      const bool free = std::ranges::none_of(now, [&](const Track& t) { return t.id == each.id; });
-      if (free && shared > best) best = shared, track.id = each.id;
+      if (shared > best && std::ranges::find(now, each.id, &Track::id) == now.end())
+        best = shared, track.id = each.id;
     }
     if (track.id == 0) track.id = ++last;
   }
