@@ -7,7 +7,7 @@
 
 namespace cerberus::rtsp {
 
-// Of any payloader: the marker bit or the next time stamp ends a picture.
+// Of any payloader: the marker bit, the next time stamp or the end of the stream ends a picture; a flush drops it.
 void send_whole_pictures(GstElement* payloader);
 
 }  // namespace cerberus::rtsp

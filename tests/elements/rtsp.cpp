@@ -626,20 +626,70 @@ GST_START_TEST(the_slices_of_a_picture_are_sent_together) {
 }
 GST_END_TEST
 
-GST_START_TEST(a_picture_without_a_marker_is_sent_when_the_next_one_begins) {
+// An element in place of a payloader, whose packets come from the test.
+GstHarness* payloader_of(Sent& sent) {
   GstHarness* harness = gst_harness_new("identity");
-  Sent sent;
   send_whole_pictures(harness->element);
   note_what(harness->element, sent);
   gst_harness_set_src_caps_str(harness, "application/x-rtp");
+  return harness;
+}
+
+void push_packet(GstHarness* harness, int stamp, bool marker) {
+  const guint8 header[12] = {
+      0x80, static_cast<guint8>(96 | (marker ? 0x80 : 0)), 0, 0, 0, 0, 0, static_cast<guint8>(stamp)};
+  GstBuffer* packet = gst_buffer_new_memdup(header, sizeof header);
+  fail_unless_equals_int(gst_harness_push(harness, packet), GST_FLOW_OK);
+}
+
+GST_START_TEST(a_picture_without_a_marker_is_sent_when_the_next_one_begins) {
+  Sent sent;
+  GstHarness* harness = payloader_of(sent);
   for (const auto& [stamp, marker] :
-       {std::pair{1, false}, {1, false}, {2, false}, {3, false}, {3, true}, {4, true}}) {
-    const guint8 header[12] = {
-        0x80, static_cast<guint8>(96 | (marker ? 0x80 : 0)), 0, 0, 0, 0, 0, static_cast<guint8>(stamp)};
-    GstBuffer* packet = gst_buffer_new_memdup(header, sizeof header);
-    fail_unless_equals_int(gst_harness_push(harness, packet), GST_FLOW_OK);
-  }
+       {std::pair{1, false}, {1, false}, {2, false}, {3, false}, {3, true}, {4, true}})
+    push_packet(harness, stamp, marker);
   fail_unless(sent.lists == std::vector<guint>({2, 1, 2, 1}) && sent.alone == 0);
+  gst_harness_teardown(harness);
+}
+GST_END_TEST
+
+GST_START_TEST(the_last_picture_is_sent_at_the_end_without_a_marker_too) {
+  Sent sent;
+  GstHarness* harness = payloader_of(sent);
+  for (int k = 0; k < 3; ++k) push_packet(harness, 1, false);
+  fail_unless_equals_int(gst_harness_buffers_received(harness), 0);
+  fail_unless(gst_harness_push_event(harness, gst_event_new_eos()));
+  fail_unless_equals_int(gst_harness_buffers_received(harness), 3);
+  gst_harness_teardown(harness);
+}
+GST_END_TEST
+
+GST_START_TEST(a_flush_drops_the_picture_that_has_begun) {
+  Sent sent;
+  GstHarness* harness = payloader_of(sent);
+  push_packet(harness, 1, false);
+  gst_harness_push_event(harness, gst_event_new_flush_start());
+  gst_harness_push_event(harness, gst_event_new_flush_stop(TRUE));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(harness, gst_event_new_segment(&segment));
+  push_packet(harness, 2, false);
+  push_packet(harness, 2, true);
+  fail_unless(sent.lists == std::vector<guint>({2}));
+  gst_harness_teardown(harness);
+}
+GST_END_TEST
+
+// A payloader with neither markers nor time stamps.
+GST_START_TEST(what_has_no_end_is_sent_in_parts) {
+  constexpr int kCount = 50000;
+  Sent sent;
+  GstHarness* harness = payloader_of(sent);
+  for (int k = 0; k < kCount; ++k) push_packet(harness, 1, false);
+  int packets = 0;
+  for (const guint list : sent.lists) packets += list;
+  fail_unless(packets > kCount / 2, "%d of %d packets were sent", packets, kCount);
+  fail_unless(sent.lists.front() > 10000, "a picture of %u packets is not sent whole", sent.lists.front());
   gst_harness_teardown(harness);
 }
 GST_END_TEST
@@ -661,6 +711,9 @@ static Suite* rtsp_suite() {
   tcase_add_test(cases, what_cannot_be_served_is_named);
   tcase_add_test(cases, the_slices_of_a_picture_are_sent_together);
   tcase_add_test(cases, a_picture_without_a_marker_is_sent_when_the_next_one_begins);
+  tcase_add_test(cases, the_last_picture_is_sent_at_the_end_without_a_marker_too);
+  tcase_add_test(cases, a_flush_drops_the_picture_that_has_begun);
+  tcase_add_test(cases, what_has_no_end_is_sent_in_parts);
   suite_add_tcase(suite, cases);
   return suite;
 }
