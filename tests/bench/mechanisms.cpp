@@ -120,7 +120,7 @@ const std::vector<Mechanism> kMechanisms{
     {"follow_leap", {"tracking/data_association.cpp follow_leap"}, 1, {"association.leap=0"}},
     {"gather_fragments",
      {"tracking/data_association.cpp gather_fragments"},
-     3,
+     1,
      {"association.fragment_inside=2"}},
     {"side_by_side",
      {"tracking/data_association.cpp side_by_side"},
@@ -164,7 +164,7 @@ const std::vector<Mechanism> kMechanisms{
       "tracking/track_hypothesis.cpp stretch"},
      3,
      {"track.upright=1000000"}},
-    {"panned", {}, 3, {"track.panned_acceleration=0.25", "track.panned_widens=1", "track.panned_misfit=0.4"}},
+    {"panned", {}, 3, {"track.panned_acceleration=0.25", "track.panned_widens=1", "track.panned_misfit=0.3"}},
     {"fast", {}, 1, {"track.fast=1000000"}},
 };
 
