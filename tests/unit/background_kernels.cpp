@@ -214,7 +214,8 @@ START_TEST(learning_agrees_with_the_reference) {
                            spread[i].view().data,
                            age[i].view().data,
                            width,
-                           round % 3 ? 15 : 0};
+                           round % 3 ? 15 : 0,
+                           round % 4 + 1};
         if (i)
           learn_row_reference(row);
         else
@@ -253,10 +254,29 @@ START_TEST(a_steady_picture_is_averaged_over_its_first_frames) {
 }
 END_TEST
 
+// At 100 frames a second: quiet counts one for four frames.
+START_TEST(an_absorbed_pixel_is_half_as_old_as_it_has_rested) {
+  struct Case {
+    std::uint8_t age, quiet;
+    int tick, then;
+  };
+  for (const Case& c : {Case{200, 25, 4, 50}, {200, 25, 1, 12}, {60, 25, 4, 30}, {200, 0, 4, 2}}) {
+    std::uint16_t mean = 100 << 8;
+    std::uint8_t spread = 16, age = c.age;
+    const std::uint8_t frame = 10, memory = 100;
+    const std::uint64_t none = 0, all = 1;
+    learn_row_reference(
+        {&frame, &memory, &frame, &c.quiet, &none, &all, &all, &mean, &spread, &age, 1, 0, c.tick});
+    ck_assert_int_eq(age, c.then);
+  }
+}
+END_TEST
+
 int main() {
   return run_suite_on_every_target(
       "scene_kernels",
       {block_sums_agree_with_the_reference, block_sums_of_a_ramp_are_those_of_its_slope,
        comparison_agrees_with_the_reference, comparison_follows_its_definition_on_single_pixels,
-       learning_agrees_with_the_reference, a_steady_picture_is_averaged_over_its_first_frames});
+       learning_agrees_with_the_reference, a_steady_picture_is_averaged_over_its_first_frames,
+       an_absorbed_pixel_is_half_as_old_as_it_has_rested});
 }

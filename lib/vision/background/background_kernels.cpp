@@ -166,7 +166,8 @@ void learn_row(const LearnRow& row) {
     const hn::Repartition<std::uint8_t, decltype(d)> d8;
     const auto young_table = hn::LoadDup128(d8, young_bytes), old_table = hn::LoadDup128(d8, old_bytes);
     const auto set = [&](int v) { return hn::Set(d, static_cast<std::int16_t>(v)); };
-    const auto most = set(255), one = set(1), sixteen = set(16), high = set(-32768), phase = set(row.phase);
+    const auto most = set(255), one = set(1), sixteen = set(16), high = set(-32768), phase = set(row.phase),
+               tick = set(row.tick);
     const auto white = hn::Set(du, 255 << 8);
     const auto look_up = [&](auto table, auto index) {
       return hn::And(hn::BitCast(d, hn::TableLookupBytesOr0(table, hn::BitCast(d8, hn::Or(index, high)))),
@@ -195,7 +196,8 @@ void learn_row(const LearnRow& row) {
     auto next_age = hn::Min(hn::Add(age, one), most);
 
     const auto fresh = hn::ShiftLeft<8>(hn::BitCast(du, load(d, row.taken + x)));
-    const auto young = hn::IfThenElse(unknown, one, hn::Max(set(2), hn::ShiftRight<1>(hn::Min(age, quiet))));
+    const auto rested = hn::Mul(quiet, tick);  // frames
+    const auto young = hn::IfThenElse(unknown, one, hn::Max(set(2), hn::ShiftRight<1>(hn::Min(age, rested))));
     next = hn::IfThenElse(hn::RebindMask(du, take), fresh,
                           hn::IfThenElse(hn::RebindMask(du, follow), next, mean));
     next_spread = hn::IfThenElse(take, sixteen, hn::IfThenElse(follow, next_spread, spread));
@@ -290,7 +292,7 @@ void learn_row_reference(const LearnRow& row) {
       row.mean[x] = static_cast<std::uint16_t>(row.taken[x] << 8);
       row.spread[x] = 16;
       row.age[x] =
-          static_cast<std::uint8_t>(age == 0 ? 1 : std::max(2, std::min<int>(age, row.quiet[x]) / 2));
+          static_cast<std::uint8_t>(age == 0 ? 1 : std::max(2, std::min(age, row.quiet[x] * row.tick) / 2));
       continue;
     }
     if (bit_at(row.keep, x)) continue;

@@ -30,7 +30,7 @@ struct BlockRows {
   GrayView frame, background, age, quiet;  // background: readable one pixel beyond every side
   int first = 0, end = 0;                  // rows to use, 1 <= first, end <= height - 1
   int step = 1;                            // every step-th of them
-  int quiet_from = 3;
+  int quiet_from = 3;                      // ticks
 };
 // The block whose columns begin at x; columns outside [begin, end) are left out, with begin >= 1, end <= width - 1.
 BlockSums block_sums(const BlockRows& rows, int x, int begin, int end);
@@ -82,17 +82,19 @@ struct LearnRow {
   const std::uint8_t* frame = nullptr;
   const std::uint8_t* background = nullptr;  // as compared: under the frame's light
   const std::uint8_t* taken = nullptr;       // the frame as it is learnt: mostly under the model's light
-  const std::uint8_t* quiet = nullptr;
-  const std::uint64_t* keep = nullptr;    // foreground: not learnt
-  const std::uint64_t* absorb = nullptr;  // replaced at once by `taken`
-  const std::uint64_t* valid = nullptr;   // covered by this frame
-  std::uint16_t* mean = nullptr;          // grey level * 256
+  const std::uint8_t* quiet = nullptr;       // ticks
+  const std::uint64_t* keep = nullptr;       // foreground: not learnt
+  const std::uint64_t* absorb = nullptr;     // replaced at once by `taken`
+  const std::uint64_t* valid = nullptr;      // covered by this frame
+  std::uint16_t* mean = nullptr;             // grey level * 256
   std::uint8_t *spread = nullptr, *age = nullptr;
   int width = 0;
   int phase = 0;  // 0 or 15, alternating: rounding of the spread
+  int tick = 1;   // frames for which `quiet` counts one; at most 128
 };
 // mean += rate(age) (frame - background), rate = 1 / (age + 1) down to 3 / 256; spread follows
-// 16 |frame - background| with 1/16; age + 1. Pixels of age 0 and absorbed ones are set to `taken`.
+// 16 |frame - background| with 1/16; age + 1. Pixels of age 0 and absorbed ones are set to `taken`;
+// an absorbed one is then half as old as it has been learnt, or has rested where that is less, and at least 2.
 void learn_row(const LearnRow& row);
 void learn_row_reference(const LearnRow& row);
 

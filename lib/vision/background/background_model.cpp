@@ -30,7 +30,7 @@ constexpr struct Parameters {
   double period_rate = 0.1;        // share by which the smoothed period follows a frame's
   int block_step = 2;              // every so many rows of a block are measured
   std::size_t most_excluded = 16;  // boxes that are excluded; the others are scene
-  int block_quiet = 3;  // frames without motion from which a pixel counts for the registration error
+  int block_quiet = 3;  // ticks without motion from which a pixel counts for the registration error
 } kParameters;
 
 // 64 bits of a row from x on, zeros outside the row.
@@ -283,6 +283,7 @@ void BackgroundModel::State::learn(const BackgroundInput& in) {
   LearnRow row;
   row.width = size.width;
   row.phase = frames % 2 ? 15 : 0;
+  row.tick = std::min(classification.tick(), 128);
   row.valid = covered.view().data;
   for (int y = 0; y < size.height; ++y) {
     row.frame = frame.view().row(y), row.background = light.background().row(y),

@@ -61,6 +61,7 @@ class ForegroundClassification {
   // deviation of frame - background by brightness, grey levels.
   BitView foreground() const { return weak_.view(); }
   const std::array<double, kBrightness>& noise() const { return noise_; }
+  int tick() const { return windows_.tick; }  // frames
 
   std::size_t bytes() const;
 
