@@ -15,7 +15,7 @@ import time
 
 from support import without_verify
 
-CERBERUSD, HAS = sys.argv[1], sys.argv[2:]
+CERBERUSD, HAS = os.path.abspath(sys.argv[1]), sys.argv[2:]
 PATIENCE = 60  # seconds for what takes one on an idle machine
 FRONT = '[[camera]]\nname = "front"\nkind = "test"\n'  # lines 1 to 3
 BACK = '[[camera]]\nname = "back"\nkind = "test"\n'
