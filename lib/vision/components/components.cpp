@@ -22,6 +22,7 @@ constexpr struct Parameters {
   double empty_share =
       0.2;              // of one that was background before, at the picture's edge: its object may have left
   int least_moved = 4;  // pixels: fewer are noise
+  int least_rest = 4;   // ticks for which what is not kept rests before it is absorbed
   int shake = 3;        // frames within which a shaken camera has not moved away from what it saw
   int contrast = 6;     // grey levels of an edge: the comparison's limit for noise
   double certain =
@@ -270,10 +271,10 @@ void ForegroundComponents::absorb_rest(const ComponentInput& input, const FrameW
     const Evidence& evidence = evidence_[r.component];
     if (evidence.kept || evidence.flash) continue;
     for (int x = r.first; x < r.end; ++x) {
-      const int patience =
-          input.still && evidence.object
-              ? windows.hold
-              : std::clamp<int>(input.age.at(x, r.row) / windows.tick, kParameters.least_moved, windows.hold);
+      const int age = input.age.at(x, r.row);  // 255: or more
+      const int patience = (input.still && evidence.object) || age == 255
+                               ? windows.hold
+                               : std::clamp(age / windows.tick, kParameters.least_rest, windows.hold);
       if (evidence.doubtful || input.quiet.at(x, r.row) > patience) set_bits(absorb.row(r.row), x, x + 1);
     }
   }
