@@ -72,8 +72,9 @@ START_TEST(who_is_small_cut_or_hidden_is_not_plain) {
   DevelopmentRun run(sequence, false);
   run.add({}, kPicture, 0);
   const bool plain[]{true, false, false, false, false, true};
-  for (const FirstBox& b : run.outcome().first_boxes)
-    ck_assert_msg(b.plain == plain[b.person - 1], "%d", b.person);
+  const Outcome outcome = run.outcome();
+  ck_assert_uint_eq(outcome.first_boxes.size(), 6);
+  for (const FirstBox& b : outcome.first_boxes) ck_assert_msg(b.plain == plain[b.person - 1], "%d", b.person);
 }
 END_TEST
 

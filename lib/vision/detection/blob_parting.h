@@ -22,8 +22,7 @@ class BlobParting {
   // Lengths in heights of the blob. Guard: tests/unit (blob_parting, regions), MOTA on TUD-Campus and TUD-Stadtmitte.
   struct Parameters {
     int least_height = 40;  // pixels of a blob. derived: a valley is 3 rows; less is noise
-    // Foreground in a column through the trunk of a person, who may be lower than the blob. swept:
-    // .3 to .5.
+    // Foreground in a column through the trunk of a person, who may be lower than the blob. swept: .3 to .5.
     double trunk = 0.38;
     // Foreground in the emptiest column between two people: their shadow. swept: .02 to .15.
     double valley = 0.07;

@@ -22,8 +22,8 @@ struct DarknetNetwork {
 // sentence ("it has no [yolo] layer"): it describes no network that finds boxes in a picture of three planes.
 std::optional<DarknetNetwork> read_darknet_cfg(std::string_view cfg, std::string& wrong);
 
-// The size of the network's picture for frames of this size: convolutions take any whose sides are multiples of the
-// coarsest cell's. The one that shows the frame largest, of those with as many pixels as `own`, which a small network has twice.
+// The size of the network's picture for frames of this size: its sides are multiples of the coarsest cell's. Of the sizes with at
+// most as many pixels as `own` (a small network: twice as many), the one that shows the frame largest.
 Size darknet_input_for(Size frame, Size own);
 
 // The configuration with this score in each [yolo] layer, below which OpenCV drops boxes; without one it takes .2.

@@ -30,7 +30,7 @@ DataAssociation::Turn DataAssociation::turn_of(const TrackHypothesis& t) {
   }
 }
 
-// Two upright boxes beside each other, nearly as tall as the track, are two persons who walk side by side, not fragments of
+// Two upright boxes with rows in common, nearly as tall as the track, are two persons who walk side by side, not fragments of
 // one.
 bool DataAssociation::side_by_side(const Box& a, const Box& b, const Box& expected) const {
   const double low = std::max(a.y, b.y), high = std::min(a.bottom(), b.bottom());
