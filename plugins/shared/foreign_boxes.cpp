@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "cerberus/private/compat.hpp"
@@ -33,7 +34,8 @@ void add(double x, double y, double width, double height, vision::Size frame, co
   if (box && confidence >= 0) boxes.push_back({*box, std::min(confidence, 1.0), is_person_label(label)});
 }
 
-// As DL Streamer gives it, and this library: a param `detection` with the number `confidence`.
+// As DL Streamer gives it, and this library: a param `detection` with the number `confidence`. 1 where there is none; NaN where
+// it is no number.
 double confidence_of(GstVideoRegionOfInterestMeta* roi) {
   const GstStructure* detection = gst_video_region_of_interest_meta_get_param(roi, "detection");
   const GValue* value = detection ? gst_structure_get_value(detection, "confidence") : nullptr;
@@ -41,7 +43,7 @@ double confidence_of(GstVideoRegionOfInterestMeta* roi) {
   GValue number = G_VALUE_INIT;
   g_value_init(&number, G_TYPE_DOUBLE);
   const bool known = g_value_transform(value, &number);
-  const double confidence = known ? g_value_get_double(&number) : 1;
+  const double confidence = known ? g_value_get_double(&number) : std::numeric_limits<double>::quiet_NaN();
   g_value_unset(&number);
   return confidence;
 }

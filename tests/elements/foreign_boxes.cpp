@@ -239,6 +239,12 @@ GST_START_TEST(other_labels_bad_boxes_and_our_own_regions_are_no_witness) {
             roi, gst_structure_new("detection", "confidence", G_TYPE_DOUBLE, kNone, nullptr));
       },
       [](GstBuffer* in, Form) {
+        GstVideoRegionOfInterestMeta* roi =
+            gst_buffer_add_video_region_of_interest_meta(in, "person", 200, 100, 40, 80);
+        gst_video_region_of_interest_meta_add_param(
+            roi, gst_structure_new("detection", "confidence", G_TYPE_STRING, "0.1", nullptr));
+      },
+      [](GstBuffer* in, Form) {
         CerberusRegion region;
         cerberus_region_init(&region);
         region.id = 7, region.tracked = region.person = TRUE, region.confidence = .9;
