@@ -385,10 +385,11 @@ void Detection::publish(const Frame& frame, const vision::LumaSource& luma, doub
     EvidenceInput seen{
         .size = frame.size, .luma = luma, .seconds = step, .fresh = frame.fresh, .motion = frame.motion};
     if (const auto* camera = cerberus_buffer_peek_camera_motion(frame.buffer)) seen.calm = camera->calm;
-    // The detector looks for the first time, amid a scene: the tracks of before go on, with their identities.
+    // The detector looks for the first time, amid a scene: what has been published goes on, with its identities.
     if (!state.judged && !frame.fresh) {
       seen.fresh = true;
       state.evidence.update(seen, state.moving, {}, false);
+      state.evidence.go_on(state.published);
       seen.fresh = false;
       seen.seconds = 0;
       seen.motion = {};

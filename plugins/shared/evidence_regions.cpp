@@ -29,6 +29,10 @@ void EvidenceRegions::reset() {
   begun_before_.reset();
 }
 
+void EvidenceRegions::go_on(std::span<const CerberusRegion> published) {
+  for (const CerberusRegion& region : published) tracker_.go_on(region.id);
+}
+
 // A result of another look than the one that is known to be in progress is of no use: the frame that was looked at was
 // dropped on its way, or is of another scene.
 std::optional<vision::EvidenceLook> EvidenceRegions::result(const PersonLooks& looks) {

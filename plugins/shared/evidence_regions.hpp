@@ -34,6 +34,9 @@ class EvidenceRegions {
   std::vector<CerberusRegion>& update(const EvidenceInput& frame, std::span<const CerberusRegion> motion,
                                       const PersonLooks& looks, bool persons_only);
 
+  // Those of the last update() that have these identities have been published before, as motion alone shows them.
+  void go_on(std::span<const CerberusRegion> published);
+
  private:
   std::optional<vision::EvidenceLook> result(const PersonLooks& looks);
 

@@ -176,6 +176,28 @@ GST_START_TEST(the_first_look_leaves_the_tracks_of_before_as_they_are) {
 }
 GST_END_TEST
 
+// The first box is elsewhere in the picture, and the track has not gone far yet: what was published stays published.
+GST_START_TEST(a_first_look_at_another_place_leaves_the_tracks_of_before_where_they_are) {
+  scene::World world;
+  world.speed = 1;
+  scene::Line line("motiondetect");
+  int first = -1;
+  guint before = 0;
+  for (int n = 0; n < 90 && (first < 0 || n < first + 24); ++n) {
+    GstBuffer* in = scene::grey_buffer(world, n);
+    if (first >= 0 && (n - first) % kLook == 1) add_region_of_interest(in, "person", 260, 20, 40, 80, .9);
+    GstBuffer* out = line.through(in);
+    const Regions regions(out);
+    if (first < 0 && regions.size() > 0) first = n, before = regions[0].id;
+    bool there = false;
+    for (guint i = 0; i < regions.size(); ++i) there = there || regions[i].id == before;
+    fail_unless(first < 0 || there, "gone at frame %d, first at %d", n, first);
+    gst_buffer_unref(out);
+  }
+  fail_unless(first >= 0);
+}
+GST_END_TEST
+
 GST_START_TEST(boxes_follow_a_picture_that_is_converted_and_scaled_on_its_way) {
   const scene::World world = walk();
   scene::Line line(
@@ -346,6 +368,7 @@ Suite* foreign_boxes_suite() {
   tcase_add_test(tests, a_detector_of_2_hz_gives_persons_who_are_followed_between_its_looks_and_end);
   tcase_add_test(tests, a_detector_of_every_frame_ends_a_person_soon);
   tcase_add_test(tests, the_first_look_leaves_the_tracks_of_before_as_they_are);
+  tcase_add_test(tests, a_first_look_at_another_place_leaves_the_tracks_of_before_where_they_are);
   tcase_add_test(tests, boxes_follow_a_picture_that_is_converted_and_scaled_on_its_way);
   tcase_add_test(tests, each_object_is_one_object_of_a_line);
   tcase_add_test(tests, other_labels_bad_boxes_and_our_own_regions_are_no_witness);

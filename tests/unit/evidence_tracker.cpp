@@ -357,6 +357,50 @@ START_TEST(a_look_at_the_very_frame_shows_where_the_body_is_now) {
 }
 END_TEST
 
+// Motion ends for who stands still, and is another track when the person goes on.
+START_TEST(who_stops_and_is_looked_at_keeps_the_identity_when_motion_ends) {
+  for (const bool shown : {true, false}) {
+    Scene scene;
+    bring(scene, body_at(200 - kGone), body_at(200));
+    std::span<const EvidenceResult> found;
+    for (int n = 0; n < 96; ++n) {
+      std::vector<Track> motion;
+      if (n < 24) {  // held where it stands
+        motion.push_back(motion_track(7, body_at(200)));
+        if (n > 6) motion.back().state = TrackState::stopped;
+      }
+      if (n >= 84) motion.push_back(motion_track(8, body_at(200 + 4 * (n - 84))));
+      std::optional<std::vector<PersonDetection>> late;
+      if (n % kLook == 1)
+        late = n < 6 || shown ? std::vector<PersonDetection>{{body_at(200), kSure}}
+                              : std::vector<PersonDetection>{};
+      found = scene.frame({200.0 + std::max(0, 4 * (n - 84))}, motion, late);
+      if (n % kLook == 0) scene.look();
+      if (n < 2 || (n >= 24 && !shown)) continue;
+      ck_assert_msg(found.size() == 1 && found[0].id == 7 && found[0].person, "frame %d", n);
+      ck_assert(near(found[0].box, body_at(200 + std::max(0, 4 * (n - 84)))));
+    }
+    ck_assert(shown || found.empty() || found[0].id == 8);
+  }
+}
+END_TEST
+
+// Somebody who comes straight on: the box grows about its middle.
+START_TEST(what_grows_by_a_quarter_within_a_second_has_moved) {
+  for (const double growth : {1.0, 1.5}) {
+    Scene scene;
+    bool published = false;
+    for (int n = 0; n < 24; ++n) {
+      const double height = 120 * std::pow(growth, n / 24.0), width = height / 3;
+      published =
+          !scene.frame({}, {motion_track(7, {320 - width / 2, 240 - height / 2, width, height})}).empty();
+      ck_assert(growth > 1 || !published);
+    }
+    ck_assert(published == (growth > 1));
+  }
+}
+END_TEST
+
 // As of a frame that repeats another and has its time.
 START_TEST(a_frame_of_the_same_time_leaves_a_velocity_that_is_a_number) {
   Scene scene;
@@ -449,6 +493,8 @@ int main() {
                     who_is_shown_once_a_second_is_published_all_the_time,
                     a_look_counts_however_late_it_is,
                     a_look_at_the_very_frame_shows_where_the_body_is_now,
+                    who_stops_and_is_looked_at_keeps_the_identity_when_motion_ends,
+                    what_grows_by_a_quarter_within_a_second_has_moved,
                     a_frame_of_the_same_time_leaves_a_velocity_that_is_a_number,
                     an_identity_that_motion_gives_back_is_the_persons_again,
                     after_a_reset_nothing_is_known_and_no_identity_is_given_twice,

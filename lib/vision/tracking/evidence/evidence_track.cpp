@@ -36,7 +36,10 @@ EvidenceTrack EvidenceTrack::begin(const Box& box) {
 
 void EvidenceTrack::set_box(const Box& box) {
   const Point to = middle_of(box);
-  if (height > 0) way_.x += (to.x - centre.x) / height, way_.y += (to.y - centre.y) / height;
+  if (height > 0) {
+    way_.x += (to.x - centre.x) / height, way_.y += (to.y - centre.y) / height;
+    growth_.x += std::log(box.width / (shape * height)), growth_.y += std::log(box.height / height);
+  }
   centre = to;
   height = box.height, shape = box.width / box.height;
   place_variance = kFirstPlace * kFirstPlace, height_variance = kFirstHeight * kFirstHeight;
@@ -44,7 +47,7 @@ void EvidenceTrack::set_box(const Box& box) {
 
 void EvidenceTrack::follow(const Pyramid* before, const Pyramid& now, const Transform& motion, double seconds,
                            const EvidenceParameters& p) {
-  age += seconds, unseen += seconds, since_motion += seconds;
+  age += seconds, unseen += seconds, since_motion += seconds, since_look += seconds;
   hit = false;
   const Point at_rest = motion.apply(centre);
   const double grown = height * scale_at(motion, centre);
@@ -55,6 +58,7 @@ void EvidenceTrack::follow(const Pyramid* before, const Pyramid& now, const Tran
   Point own{velocity.x * seconds, velocity.y * seconds};
   if (step) {
     height *= step->growth;
+    growth_.x += std::log(height / grown), growth_.y += std::log(height / grown);
     own = {(centre.x + step->shift.x - at_rest.x) / height, (centre.y + step->shift.y - at_rest.y) / height};
     if (seconds > 0) {
       const double gain = std::min(1.0, seconds / p.velocity_time);
@@ -91,14 +95,16 @@ void EvidenceTrack::distrust() {
 void EvidenceTrack::keep() {
   const Place& last = places_[(next_ + kKept - 1) % kKept];
   if (age - last.age < kTravelTime / kKept) return;
-  places_[next_] = {way_, age};
+  places_[next_] = {way_, growth_, age};
   next_ = (next_ + 1) % kKept;
 }
 
 bool EvidenceTrack::travels(double distance) const {
   return std::ranges::any_of(places_, [&](const Place& place) {
-    return age - place.age <= kTravelTime &&
-           std::hypot(way_.x - place.way.x, way_.y - place.way.y) > distance;
+    if (age - place.age > kTravelTime) return false;
+    const double across = growth_.x - place.growth.x, up = growth_.y - place.growth.y;
+    const double growth = across * up > 0 ? std::min(std::abs(across), std::abs(up)) : 0;
+    return growth > distance || std::hypot(way_.x - place.way.x, way_.y - place.way.y) > distance;
   });
 }
 

@@ -32,7 +32,7 @@ struct EvidenceTrack {
   RegionKind kind = RegionKind::person_like;
   double evidence = 0;
   double quality = 0;  // mean of what the last looks gave: of two tracks of one body the better one stays
-  double age = 0, unseen = 0, since_motion = 1e9;  // s
+  double age = 0, unseen = 0, since_motion = 1e9, since_look = 1e9;  // s; since a look has shown it
   double fast = 0;                                 // s for which its motion track has been fast
   Point centre, velocity;                          // velocity: h/s relative to the scene
   double height = 0, shape = 0;                    // shape: width / height
@@ -56,17 +56,19 @@ struct EvidenceTrack {
   void distrust();
   // Keeps its way for travels(); once a frame.
   void keep();
-  // Whether it has gone so far, h, from any of its places of the last second.
+  // Whether it has gone so far, h, from any of its places of the last second, or has grown or shrunk by this in both
+  // directions (logarithm).
   bool travels(double distance) const;
   void add(double more, const EvidenceParameters& p);
 
  private:
   struct Place {
-    Point way;
+    Point way, growth;
     double age = -1e9;
   };
   Box looked_;
-  Point way_;  // h, since it began, relative to the scene
+  // Since it began, relative to the scene: h, and logarithms of width and height.
+  Point way_, growth_;
   std::size_t next_ = 0;
   std::array<Place, kKept> places_;
 };

@@ -47,6 +47,16 @@ Box EvidenceTracker::reduced(const Box& box) const {
                 static_cast<double>(frame_.picture.height) / frame_.size.height);
 }
 
+// s without an observation for which a track is published.
+double EvidenceTracker::shown_time() const {
+  return std::max(p_.shown, p_.looks_shown * period_);
+}
+
+void EvidenceTracker::go_on(std::uint32_t motion_id) {
+  for (EvidenceTrack& t : tracks_)
+    if (t.mirrors && t.motion_id == motion_id) t.published = true;
+}
+
 void EvidenceTracker::begin_look() {
   Image<std::uint8_t>& present = pictures_[present_];
   looked_.resize(present.size());
@@ -126,6 +136,7 @@ void EvidenceTracker::match_look(bool sure) {
     t.person = t.person || sure;
     t.hit = true;
     t.unseen = 0;
+    if (sure) t.since_look = 0;
     used_[j] = 1;
   });
 }
@@ -229,7 +240,13 @@ void EvidenceTracker::take_motion(std::span<const Track> motion) {
   std::erase_if(tracks_, [&](EvidenceTrack& t) {
     if (!t.mirrors) return false;
     const auto found = std::ranges::find(motion, t.motion_id, &Track::id);
-    if (found == motion.end()) return true;
+    if (found == motion.end()) {
+      // A person whom looks have shown since motion did stands there, and goes on by the picture. Without `since` that costs a
+      // point of MOTA: who has left is shown for too long.
+      t.mirrors = false;
+      const bool stands = t.since_look < t.since_motion && t.since_look <= shown_time();
+      return !(t.person && stands) || t.holds_several;
+    }
     mirror(t, *found);
     if (found->state == TrackState::seen) t.evidence = p_.ceiling;
     used_[static_cast<std::size_t>(found - motion.begin())] = 1;
@@ -313,7 +330,7 @@ void EvidenceTracker::publish(std::span<const Track> motion) {
   const double across = static_cast<double>(frame_.size.width) / frame_.picture.width;
   const double down = static_cast<double>(frame_.size.height) / frame_.picture.height;
   for (const EvidenceTrack& t : tracks_) {
-    if (!t.published || (!t.mirrors && t.unseen > std::max(p_.shown, p_.looks_shown * period_))) continue;
+    if (!t.published || (!t.mirrors && t.unseen > shown_time())) continue;
     const auto stands_for = [&](const EvidenceTrack& other) {
       return other.published && other.person && !other.holds_several &&
              share_within(other.box(), t.box()) >= p_.body.nested;

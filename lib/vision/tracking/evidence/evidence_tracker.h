@@ -61,6 +61,8 @@ class EvidenceTracker {
   void reset();
   // The last frame of update() is looked at: the next look that is passed shows it.
   void begin_look();
+  // This motion track has been published before the first look: it stays so.
+  void go_on(std::uint32_t motion_id);
   // motion: tracks of what moves in this frame, published or not. Returns the tracks to be published, by identity; the
   // span lives until the next call. Motion tracks keep their identities; those of others begin at 1000001.
   std::span<const EvidenceResult> update(const EvidenceFrame& frame, std::span<const Track> motion,
@@ -72,6 +74,7 @@ class EvidenceTracker {
     std::uint32_t motion_id = 0, id = 0;
     bool person = false, published = false;
   };
+  double shown_time() const;
   Box reduced(const Box& box) const;
   bool inside_moves(const Box& box, bool calm) const;
   void take_look(const EvidenceLook& look);
