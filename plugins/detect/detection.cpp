@@ -347,6 +347,7 @@ void Detection::read_looks(Frame& frame, double step) {
 // Boxes of persons that other elements have found are the result of a look at this frame.
 void Detection::read_boxes(const Frame& frame, double step) {
   State& state = *state_;
+  if (frame.fresh) state.look_times.reset();  // how long the break was says nothing of the detector
   state.looks.begins = state.looks.ends = 0;
   state.looks.bodies.clear();
   state.looks.encloses = vision::kNetworkUse.encloses;

@@ -72,10 +72,27 @@ START_TEST(a_single_look_is_missed_after_a_second) {
 }
 END_TEST
 
+START_TEST(a_break_is_no_interval) {
+  // A look a second, a cut .2 s after one of them, and looks as before.
+  LookTimes times;
+  int missed = 0;
+  const auto looks = [&](int from, int to, int at) {
+    for (int n = from; n < to; ++n) {
+      const bool boxes = n % 25 == at;
+      missed += times.is_look(kFrame, boxes) && !boxes;
+    }
+  };
+  looks(0, 80, 0);
+  times.reset();
+  looks(80, 280, 5);
+  ck_assert_int_eq(missed, 0);
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
-      "look_times",
-      {without_boxes_nothing_is_a_look, between_the_looks_of_a_slow_detector_nobody_is_missed,
-       who_has_left_is_missed_once_an_interval, a_detector_of_every_frame_misses_at_every_frame,
-       a_look_that_missed_somebody_makes_no_slow_detector_of_it, a_single_look_is_missed_after_a_second});
+      "look_times", {without_boxes_nothing_is_a_look, between_the_looks_of_a_slow_detector_nobody_is_missed,
+                     who_has_left_is_missed_once_an_interval, a_detector_of_every_frame_misses_at_every_frame,
+                     a_look_that_missed_somebody_makes_no_slow_detector_of_it,
+                     a_single_look_is_missed_after_a_second, a_break_is_no_interval});
 }
