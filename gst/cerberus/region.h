@@ -61,8 +61,8 @@ typedef enum {
  * @distance: metres from the camera; NaN if unknown, as both are of a person whom only a people detector has found
  * @motion: motion supports it: a track of what moves has its place, or has had it within the last second
  *
- * Something that moves, or a person: @motion and @person say which witnesses it has. On a buffer it is also a #GstVideoRegionOfInterestMeta of type `motion` (`person` if @person),
- * which other elements and tools read.
+ * Something that moves, or a person: @motion and @person say which witnesses it has. On a buffer it is also a
+ * #GstVideoRegionOfInterestMeta of type `motion` (`person` if @person), which other elements and tools read.
  *
  * Regions follow the picture through copying, converting, scaling and encoding, and are lost where it is cropped. Do
  * not turn or flip a picture between the elements that find regions and those that read them: videoflip keeps them

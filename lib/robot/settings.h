@@ -81,7 +81,6 @@ struct PersonsSettings {
   PersonsUse use = PersonsUse::automatic;
   Properties properties;  // of personverify
 
-  bool operator==(const PersonsSettings&) const = default;
 };
 
 // The robot's own drive: docs/manual/base.md.

@@ -21,7 +21,7 @@
  * - a motion track that holds several people is replaced by one region for each of them;
  * - `require=person` leaves out what no look has shown: `pirfusion` and `pantiltsink` behind then follow persons only.
  *
- * It stands behind `motiondetect` or in front of it, with the same result. Behind, the tracker upstream passes on to this
+ * It stands behind `motiondetect` or in front of it, with nearly the same result. Behind, the tracker upstream passes on to this
  * element what it would doubt by itself: see `motiontrack`. In front of `motiondetect` or `motiontrack` it only looks: what it
  * has seen goes along with the frames, and the tracker downstream follows by both witnesses and publishes, also in its
  * messages. Where the tracker is in one branch of a `tee`, the others get no regions. What it has seen goes through whatever
