@@ -48,6 +48,10 @@ void write_object(JsonLine& line, const MqttObject& object) {
   line.key("w").fixed(object.width, 1).key("h").fixed(object.height, 1);
   line.key("confidence").fixed(object.confidence, 3);
   line.key("bearing").fixed(object.bearing, 2).key("distance").fixed(object.distance, 2);
+  line.key("witnesses").open('[');
+  if (object.motion) line.string("motion");
+  if (object.person) line.string("person");
+  line.close(']');
 }
 
 std::string object_text(const MqttObject& object) {

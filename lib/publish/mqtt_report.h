@@ -24,6 +24,7 @@ struct MqttObject {
   std::string_view type, kind, state;
   double x = 0, y = 0, width = 0, height = 0;        // pixels
   double confidence = 0, bearing = 0, distance = 0;  // NaN: not known
+  bool motion = true, person = false;                // its witnesses
 };
 
 // What one frame carries; views are valid during the call.

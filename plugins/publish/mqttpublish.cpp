@@ -398,7 +398,9 @@ publish::MqttObject object_of(const CerberusRegion& region) {
           .height = region.height,
           .confidence = region.confidence,
           .bearing = region.bearing,
-          .distance = region.distance};
+          .distance = region.distance,
+          .motion = region.motion != FALSE,
+          .person = region.person != FALSE};
 }
 
 void read_frame(Private& p, GstBuffer* buffer, const CerberusStamp& stamp, publish::MqttFrame& frame) {

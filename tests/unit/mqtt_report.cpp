@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "publish/burst_limit.h"
@@ -76,6 +77,20 @@ START_TEST(a_track_appears_is_updated_each_second_and_leaves_two_seconds_after_i
   ck_assert((tracks(report.update(frame(seconds(4), none))) == Words{"left 4", "left 5"}));
   ck_assert(tracks(report.update(frame(seconds(5), one))) == Words{"appeared 4"});
   ck_assert(tracks(report.end()) == Words{"left 4"} && report.end().empty());
+}
+END_TEST
+
+START_TEST(a_track_names_its_witnesses) {
+  const json both({"motion", "person"}), shape({"person"}), motion({"motion"});
+  for (const auto& [moves, person, witnesses] :
+       {std::tuple(true, false, motion), std::tuple(true, true, both), std::tuple(false, true, shape)}) {
+    MqttReport report("cerberus", "front");
+    std::vector<MqttObject> one{walker(4)};
+    one[0].motion = moves, one[0].person = person;
+    const auto all = report.update(frame(seconds(1), one));
+    const MqttMessage* track = find(all, "cerberus/front/track");
+    ck_assert(track && json::parse(track->payload)["witnesses"] == witnesses);
+  }
 }
 END_TEST
 
@@ -424,5 +439,5 @@ int main() {
        events_for_a_webhook_are_sent_in_order_one_at_a_time_and_again_after_failures,
        a_webhook_that_does_not_answer_costs_256_events_and_no_more, the_fleet_is_what_the_broker_retains,
        a_picture_of_the_fleet_was_asked_for_in_the_last_30_seconds_and_ends_with_privacy,
-       the_body_of_a_webhook_is_json_with_an_object_or_a_text});
+       a_track_names_its_witnesses, the_body_of_a_webhook_is_json_with_an_object_or_a_text});
 }
