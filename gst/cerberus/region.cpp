@@ -28,6 +28,10 @@ constexpr cerberus::Field kFields[] = {
     {"distance", Type::known, offsetof(CerberusRegion, distance)},
 };
 
+// Part of the binary interface: fields take the place of the reserved ones. By hand, of structures of a 64-bit system.
+static_assert(sizeof(gpointer) != 8 ||
+              (offsetof(CerberusRegion, motion) == 104 && sizeof(CerberusRegion) == 136));
+
 void moves_somewhere(CerberusRegion& region) {
   region.bearing = region.distance = NAN;
   region.motion = TRUE;
