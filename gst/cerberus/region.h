@@ -17,7 +17,7 @@ G_BEGIN_DECLS
  * CerberusRegionState:
  * @CERBERUS_REGION_SEEN: measured in this frame
  * @CERBERUS_REGION_COASTED: carried on by its velocity, nothing was measured in this frame
- * @CERBERUS_REGION_STOPPED: it stopped moving and is held where it was
+ * @CERBERUS_REGION_STOPPED: it stands, and is held where it was, or only a person detector shows it
  *
  * How a region's place was determined.
  */

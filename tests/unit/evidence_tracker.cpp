@@ -279,6 +279,50 @@ START_TEST(who_stands_before_a_still_camera_is_published_where_looks_enclose_bod
 }
 END_TEST
 
+// As a poster: before a camera that moves, and before one that stands.
+START_TEST(whom_looks_alone_show_is_stopped_after_a_while_at_one_place_and_seen_on_the_way) {
+  for (const bool still : {true, false})
+    for (const bool walks : {false, true}) {
+      Scene scene;
+      scene.encloses = true;
+      scene.still = still, scene.pan = still ? 0 : 2;
+      const double step = scene.pan + (walks ? 4 : 0);
+      const auto frames = walk(scene, 96, step, kSure);
+      ck_assert(frames[12].size() == 1 && frames[12][0].state == TrackState::seen);
+      int last_seen = 0;
+      for (int n = 13; n < 96; ++n) {
+        if (200 + step * n > kFrame.width - 80) break;  // at the picture's edge
+        ck_assert_int_eq(frames[n].size(), 1);
+        if (frames[n][0].state == TrackState::seen)
+          last_seen = n;
+        else
+          ck_assert(frames[n][0].state == TrackState::stopped);
+        ck_assert_msg(!walks || last_seen == n, "frame %d", n);
+      }
+      ck_assert_msg(walks || last_seen < 72, "frame %d", last_seen);
+    }
+}
+END_TEST
+
+START_TEST(who_stops_is_stopped_and_who_goes_on_is_seen_again) {
+  Scene scene;
+  scene.calm = 0.4, scene.still = false;
+  std::vector<PersonDetection> shown;
+  double x = 100;
+  for (int n = 0; n < 192; ++n) {
+    if (n < 48 || n >= 144) x += 5;
+    std::optional<std::vector<PersonDetection>> late;
+    if (n % kLook == 1) late = shown;
+    const auto found = scene.frame({x}, {}, late);
+    if (n % kLook == 0) shown = {{body_at(x), kSure}}, scene.look();
+    if (n < 24) continue;
+    ck_assert_msg(found.size() == 1, "frame %d", n);
+    if (n < 48 || n >= 168) ck_assert_msg(found[0].state == TrackState::seen, "frame %d", n);
+    if (n >= 108 && n < 144) ck_assert_msg(found[0].state == TrackState::stopped, "frame %d", n);
+  }
+}
+END_TEST
+
 // Motion shows the legs only, while the camera moves.
 START_TEST(looks_that_enclose_bodies_go_before_a_motion_track_that_does_not_fit) {
   for (const bool encloses : {false, true}) {
@@ -488,6 +532,8 @@ int main() {
                     a_group_is_replaced_by_the_people_in_it,
                     what_never_moves_before_a_still_camera_is_nobody_however_sure_a_detector_is,
                     who_stands_before_a_still_camera_is_published_where_looks_enclose_bodies,
+                    whom_looks_alone_show_is_stopped_after_a_while_at_one_place_and_seen_on_the_way,
+                    who_stops_is_stopped_and_who_goes_on_is_seen_again,
                     looks_that_enclose_bodies_go_before_a_motion_track_that_does_not_fit,
                     a_doubtful_look_makes_no_person_of_what_moves,
                     who_is_shown_once_a_second_is_published_all_the_time,

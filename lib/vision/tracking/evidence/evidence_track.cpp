@@ -30,7 +30,7 @@ double scale_at(const Transform& t, const Point& p) {
 EvidenceTrack EvidenceTrack::begin(const Box& box) {
   EvidenceTrack t;
   t.set_box(box);
-  t.keep();
+  t.places_[t.next_++] = t.rest_;
   return t;
 }
 
@@ -92,20 +92,24 @@ void EvidenceTrack::distrust() {
   place_variance = height * height, height_variance = 1;
 }
 
-void EvidenceTrack::keep() {
+void EvidenceTrack::keep(const EvidenceParameters& p) {
+  const Place here{way_, growth_, age};
+  if (is_far(rest_, p.travel)) rest_ = here;
   const Place& last = places_[(next_ + kKept - 1) % kKept];
   if (age - last.age < kTravelTime / kKept) return;
-  places_[next_] = {way_, growth_, age};
+  places_[next_] = here;
   next_ = (next_ + 1) % kKept;
 }
 
+bool EvidenceTrack::is_far(const Place& from, double distance) const {
+  const double across = growth_.x - from.growth.x, up = growth_.y - from.growth.y;
+  const double growth = across * up > 0 ? std::min(std::abs(across), std::abs(up)) : 0;
+  return growth > distance || std::hypot(way_.x - from.way.x, way_.y - from.way.y) > distance;
+}
+
 bool EvidenceTrack::travels(double distance) const {
-  return std::ranges::any_of(places_, [&](const Place& place) {
-    if (age - place.age > kTravelTime) return false;
-    const double across = growth_.x - place.growth.x, up = growth_.y - place.growth.y;
-    const double growth = across * up > 0 ? std::min(std::abs(across), std::abs(up)) : 0;
-    return growth > distance || std::hypot(way_.x - place.way.x, way_.y - place.way.y) > distance;
-  });
+  return std::ranges::any_of(
+      places_, [&](const Place& place) { return age - place.age <= kTravelTime && is_far(place, distance); });
 }
 
 void EvidenceTrack::add(double more, const EvidenceParameters& p) {

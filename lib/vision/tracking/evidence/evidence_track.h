@@ -54,11 +54,13 @@ struct EvidenceTrack {
   void correct(const Box& seen, const EvidenceParameters& p);
   // Its box is as good as unknown: the next one that corrects it decides.
   void distrust();
-  // Keeps its way for travels(); once a frame.
-  void keep();
+  // Keeps its way for travels() and rested(); once a frame.
+  void keep(const EvidenceParameters& p);
   // Whether it has gone so far, h, from any of its places of the last second, or has grown or shrunk by this in both
   // directions (logarithm).
   bool travels(double distance) const;
+  // s for which it has not gone, grown or shrunk by EvidenceParameters::travel.
+  double rested() const { return age - rest_.age; }
   void add(double more, const EvidenceParameters& p);
 
  private:
@@ -66,11 +68,14 @@ struct EvidenceTrack {
     Point way, growth;
     double age = -1e9;
   };
+  bool is_far(const Place& from, double distance) const;
+
   Box looked_;
   // Since it began, relative to the scene: h, and logarithms of width and height.
   Point way_, growth_;
   std::size_t next_ = 0;
   std::array<Place, kKept> places_;
+  Place rest_{{}, {}, 0};  // since when it has not gone far
 };
 
 }  // namespace cerberus::vision

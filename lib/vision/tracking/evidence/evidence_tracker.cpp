@@ -314,7 +314,7 @@ void EvidenceTracker::end_tracks() {
 
 void EvidenceTracker::remember_motion() {
   for (EvidenceTrack& t : tracks_) {
-    t.keep();
+    t.keep(p_);
     if (t.motion_id == 0 || t.since_motion > 0) continue;
     auto known = std::ranges::find(known_, t.motion_id, &Known::motion_id);
     if (known == known_.end()) {
@@ -345,7 +345,9 @@ void EvidenceTracker::publish(std::span<const Track> motion) {
     r.age = t.age;
     r.confidence = std::clamp(t.evidence / p_.ceiling, 0.0, 1.0);
     r.person = t.person, r.moves = t.since_motion < 1, r.kind = t.kind;
-    r.state = t.hit || t.unseen == 0 || t.followed ? TrackState::seen : TrackState::coasted;
+    r.state = !r.moves && t.rested() >= p_.stopped   ? TrackState::stopped
+              : t.hit || t.unseen == 0 || t.followed ? TrackState::seen
+                                                     : TrackState::coasted;
     if (t.mirrors) {
       const auto found = std::ranges::find(motion, t.motion_id, &Track::id);
       r.motion = static_cast<int>(found - motion.begin());
