@@ -388,16 +388,15 @@ void Detection::publish(const Frame& frame, const vision::LumaSource& luma, doub
     if (const auto* camera = cerberus_buffer_peek_camera_motion(frame.buffer)) seen.calm = camera->calm;
     // The detector looks for the first time, amid a scene: what has been published goes on, with its identities.
     if (!state.judged && !frame.fresh) {
-      seen.fresh = true;
+      state.evidence.end_looks();
       state.evidence.update(seen, state.moving, {}, false);
-      state.evidence.go_on(state.published);
-      seen.fresh = false;
       seen.seconds = 0;
       seen.motion = {};
     }
     state.published = state.evidence.update(seen, state.moving, state.looks, state.looks.persons_only);
   } else {
     state.published = state.moving;
+    if (has(Stage::tracks)) state.evidence.publish_alone(state.published);
   }
   state.judged = state.judges;
   attach_published(frame.buffer);

@@ -19,8 +19,8 @@
  * things), an object is published only while more changes inside its box than around it; an info message says so, once
  * a stream. `personverify` behind judges all of them itself, and gets them all: behind a `tee` every branch gets them,
  * also one without `personverify`. This needs the planes of the stages, too. With `personverify` in front objects are followed
- * and judged here by both witnesses, what moves and what the detector sees, as that element says it: persons have its
- * identities and types, in the messages, too.
+ * and judged here by both witnesses, what moves and what the detector sees, as that element says it, in the messages, too.
+ * Identities count from 1 in the order in which objects are published, and none is given twice.
  *
  * Boxes of persons that any other element upstream has found are such a witness, too: #GstVideoRegionOfInterestMeta, and from
  * GStreamer 1.24 on object detections of #GstAnalyticsRelationMeta, whose label is person, pedestrian, human, people, body,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "shared/evidence_regions.hpp"
 
+#include <algorithm>
+
 #include "shared/clock_times.hpp"
 #include "shared/region_conversion.hpp"
 #include "vision/tracking/evidence/kept_identities.h"
@@ -23,14 +25,20 @@ CerberusRegion region_of_person(const vision::EvidenceResult& found) {
 }  // namespace
 
 void EvidenceRegions::reset() {
+  end_looks();
   tracker_.reset();
+}
+
+void EvidenceRegions::end_looks() {
+  tracker_.drop_tracks();
   time_ = 0;
   look_ = 0;
   begun_before_.reset();
 }
 
-void EvidenceRegions::go_on(std::span<const CerberusRegion> published) {
-  for (const CerberusRegion& region : published) tracker_.go_on(region.id);
+void EvidenceRegions::publish_alone(std::vector<CerberusRegion>& motion) {
+  for (CerberusRegion& region : motion) region.id = tracker_.publish_alone(region.id);
+  std::ranges::sort(motion, {}, &CerberusRegion::id);
 }
 
 // A result of another look than the one that is known to be in progress is of no use: the frame that was looked at was
@@ -75,8 +83,8 @@ std::vector<CerberusRegion>& EvidenceRegions::update(const EvidenceInput& frame,
   seen.motion = frame.motion.transform;
   seen.still = frame.motion.still;
   seen.calm = frame.calm;
+  seen.persons_only = persons_only;
   for (const vision::EvidenceResult& found : tracker_.update(seen, motion_, result(looks))) {
-    if (persons_only && !found.person) continue;
     CerberusRegion& region = regions_.emplace_back(
         found.motion >= 0 ? motion[static_cast<std::size_t>(found.motion)] : region_of_person(found));
     region.id = found.id, region.tracked = TRUE;

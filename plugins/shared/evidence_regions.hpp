@@ -34,8 +34,10 @@ class EvidenceRegions {
   std::vector<CerberusRegion>& update(const EvidenceInput& frame, std::span<const CerberusRegion> motion,
                                       const PersonLooks& looks, bool persons_only);
 
-  // Those of the last update() that have these identities have been published before, as motion alone shows them.
-  void go_on(std::span<const CerberusRegion> published);
+  // As they are published without update(): they get their identities, and are sorted by them.
+  void publish_alone(std::vector<CerberusRegion>& motion);
+  // The detector looks on no more: as reset(), but what is published alone keeps its identities.
+  void end_looks();
 
  private:
   std::optional<vision::EvidenceLook> result(const PersonLooks& looks);

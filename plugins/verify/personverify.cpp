@@ -13,12 +13,14 @@
  * - each track has one sum of evidence. A look of the detector adds to it by its score, or takes from it where it does not
  *   show the track; motion inside the box and motion tracks add, rest in a calm scene takes away. What has not moved
  *   needs higher scores;
- * - before a camera that stands a motion track is published as it is, with its identity, once it has gone a quarter of its
+ * - before a camera that stands a motion track is published as it is once it has gone a quarter of its
  *   height, or a look has shown it: then also with the type `person` and a confidence. Before one that moves it is
  *   published once a look has shown it, or while it is fast, and a network's box goes before its own where the two differ
  *   by more than half. Where the scene is not calm (the picture shakes or blurs, or near things pass) motion tracks do not count;
- * - a person whom no motion track shows is followed by the picture from look to look, with an identity from 1000001 on;
+ * - a person whom no motion track shows is followed by the picture from look to look;
  * - a motion track that holds several people is replaced by one region for each of them;
+ * - identities count from 1 in the order in which tracks are published, and none is given twice: they are not those of the
+ *   motion tracks, which `motiondetect` in front has in its messages;
  * - `require=person` leaves out what no look has shown: `pirfusion` and `pantiltsink` behind then follow persons only.
  *
  * It stands behind `motiondetect` or in front of it, with nearly the same result. Behind, the tracker upstream passes on to this

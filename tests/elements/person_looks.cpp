@@ -86,6 +86,23 @@ GST_START_TEST(in_front_and_behind_give_the_same_lines) {
 }
 GST_END_TEST
 
+// While the camera turns, a person is first published by looks.
+GST_START_TEST(identities_count_from_1_in_both_orders) {
+  for (const char* order : {"personverify ! motiondetect", "motiondetect ! personverify"})
+    for (const Walk& walk : {kStill, kTurning, Walk{.pan = 3, .start = 120, .speed = 2}}) {
+      const std::string lines = text_of(std::string(order) + " ! motionjson", walk, kFrames);
+      guint highest = 0;
+      for (std::size_t at = lines.find("\"id\":"); at != std::string::npos;
+           at = lines.find("\"id\":", at + 1)) {
+        const auto id = static_cast<guint>(std::stoul(lines.substr(at + 5)));
+        fail_unless(id >= 1 && id <= highest + 1, "%s: %u after %u", order, id, highest);
+        highest = std::max(highest, id);
+      }
+      fail_unless(highest >= 1 && highest <= 2, "%s: %u", order, highest);
+    }
+}
+GST_END_TEST
+
 GST_START_TEST(in_front_of_the_stages_it_is_as_in_front_of_motiondetect) {
   const std::string one = text_of("personverify ! motiondetect ! motionjson", kTurning, kFrames);
   for (const char* stages :
@@ -197,6 +214,7 @@ Suite* person_looks_suite() {
   tcase_set_timeout(tests, 120);
   suite_add_tcase(suite, tests);
   tcase_add_test(tests, in_front_and_behind_give_the_same_lines);
+  tcase_add_test(tests, identities_count_from_1_in_both_orders);
   tcase_add_test(tests, in_front_of_the_stages_it_is_as_in_front_of_motiondetect);
   tcase_add_test(tests, what_it_has_seen_follows_a_picture_that_is_converted_and_scaled);
   tcase_add_test(tests, dropped_frames_between_the_two_show_nobody_where_nobody_is);

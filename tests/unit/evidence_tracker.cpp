@@ -19,7 +19,6 @@ constexpr Size kFrame{640, 480}, kSmall{320, 240};
 constexpr double kSeconds = 1.0 / 24;  // a frame
 constexpr int kLook = 6;               // frames from look to look: 4 a second
 constexpr double kSure = 2, kDoubtful = 0.6, kLikely = 0.75;
-constexpr std::uint32_t kFirstOwn = 1000001;
 constexpr double kGone = 60;  // frame pixels, a quarter of a body's height: it has moved
 
 // Frame pixels.
@@ -46,6 +45,8 @@ class Scene {
   double seconds = kSeconds;
   double pan = 0;         // frame pixels a frame by which the wall moves
   bool encloses = false;  // EvidenceLook::encloses
+  bool persons_only = false;
+  bool goes_on = false;  // it has begun before the first frame
 
   // Bodies at these columns of the frame. late: what the look at an earlier frame has shown.
   std::span<const EvidenceResult> frame(const std::vector<double>& bodies,
@@ -60,7 +61,8 @@ class Scene {
     }
     EvidenceFrame f;
     f.seconds = seconds;
-    f.fresh = number_++ == 0;
+    f.fresh = number_++ == 0 && !goes_on;
+    f.persons_only = persons_only;
     f.size = kFrame;
     f.picture = picture_.view();
     f.motion = Transform::translation(pan, 0);
@@ -123,7 +125,7 @@ START_TEST(who_is_seen_surely_is_published_after_two_looks_and_followed_between_
       if (frames[n].empty()) continue;
       if (first < 0) first = n;
       ck_assert_int_eq(frames[n].size(), 1);
-      ck_assert_uint_eq(frames[n][0].id, kFirstOwn);
+      ck_assert_uint_eq(frames[n][0].id, 1);
       ck_assert(frames[n][0].person && frames[n][0].motion < 0);
       ck_assert_msg(near(frames[n][0].box, body_at(200 + 4 * n)), "delay %d, frame %d: at %.0f, not %.0f",
                     delay, n, frames[n][0].box.x, 200.0 + 4 * n);
@@ -180,7 +182,7 @@ START_TEST(before_a_still_camera_a_motion_track_is_published_as_it_is_once_it_ha
     if (4 * n < kGone) ck_assert(found.empty());
     if (4 * n < kGone + 8) continue;
     ck_assert_int_eq(found.size(), 1);
-    ck_assert_uint_eq(found[0].id, 7);
+    ck_assert_uint_eq(found[0].id, 1);
     ck_assert(!found[0].person && found[0].moves && found[0].motion == 0);
     ck_assert(near(found[0].box, box, 0.01));
   }
@@ -241,7 +243,7 @@ START_TEST(a_look_makes_a_motion_track_a_person_and_leaves_its_box_and_identity)
   const auto found =
       scene.frame({200}, {motion_track(7, narrow)}, std::vector<PersonDetection>{{body_at(200), kSure}});
   ck_assert_int_eq(found.size(), 1);
-  ck_assert(found[0].person && found[0].id == 7);
+  ck_assert(found[0].person && found[0].id == 1);
   ck_assert(near(found[0].box, narrow, 0.01));
 }
 END_TEST
@@ -255,7 +257,7 @@ START_TEST(a_group_is_replaced_by_the_people_in_it) {
     if (n > 24 && n % kLook == 1) late = {{body_at(x - 4), kSure}, {body_at(x + 86), kSure}};
     const auto found = scene.frame({x, x + 90}, {both}, late);
     if (n % kLook == 0) scene.look();
-    if (n == 24) ck_assert(found.size() == 1 && found[0].id == 7 && found[0].kind == RegionKind::group);
+    if (n == 24) ck_assert(found.size() == 1 && found[0].id == 1 && found[0].kind == RegionKind::group);
     if (n < 48) continue;
     ck_assert_int_eq(found.size(), 2);
     ck_assert(found[0].person && found[1].person && found[0].id != found[1].id);
@@ -421,10 +423,10 @@ START_TEST(who_stops_and_is_looked_at_keeps_the_identity_when_motion_ends) {
       found = scene.frame({200.0 + std::max(0, 4 * (n - 84))}, motion, late);
       if (n % kLook == 0) scene.look();
       if (n < 2 || (n >= 24 && !shown)) continue;
-      ck_assert_msg(found.size() == 1 && found[0].id == 7 && found[0].person, "frame %d", n);
+      ck_assert_msg(found.size() == 1 && found[0].id == 1 && found[0].person, "frame %d", n);
       ck_assert(near(found[0].box, body_at(200 + std::max(0, 4 * (n - 84)))));
     }
-    ck_assert(shown || found.empty() || found[0].id == 8);
+    ck_assert(shown || found.empty() || found[0].id != 1);
   }
 }
 END_TEST
@@ -475,13 +477,58 @@ START_TEST(an_identity_that_motion_gives_back_is_the_persons_again) {
 }
 END_TEST
 
+// A person whom looks show first, then a motion track that is published at frame 40, while another never is.
+START_TEST(identities_count_in_the_order_of_publication) {
+  for (const bool persons_only : {false, true}) {
+    Scene scene;
+    scene.encloses = true;
+    scene.persons_only = persons_only;
+    std::vector<PersonDetection> seen;
+    std::span<const EvidenceResult> found;
+    for (int n = 0; n < 96; ++n) {
+      const double x = n < 36 ? 100 : std::min(100 + 4.0 * (n - 36), 300.0);
+      std::vector<Track> motion{motion_track(5, body_at(x)), motion_track(9, {20, 300, 30, 60})};
+      std::optional<std::vector<PersonDetection>> late;
+      if (n % kLook == 1) late = seen;
+      found = scene.frame({x, 500}, motion, late);
+      seen = {{body_at(500), kSure}};
+      if (persons_only && n > 60) seen.push_back({body_at(x), kSure});
+      if (n % kLook == 0) scene.look();
+    }
+    ck_assert_int_eq(found.size(), 2);
+    ck_assert(found[0].id == 1 && found[0].motion < 0 && near(found[0].box, body_at(500)));
+    ck_assert(found[1].id == 2 && near(found[1].box, body_at(300)));
+  }
+}
+END_TEST
+
+START_TEST(what_has_been_published_alone_keeps_its_identity_when_looks_begin_and_when_they_end) {
+  Scene scene;
+  ck_assert_uint_eq(scene.tracker.publish_alone(3), 1);
+  ck_assert_uint_eq(scene.tracker.publish_alone(8), 2);
+  ck_assert_uint_eq(scene.tracker.publish_alone(3), 1);
+  scene.goes_on = true;
+  const std::vector<Track> motion{motion_track(8, body_at(400)), motion_track(4, body_at(50))};
+  auto found = scene.frame({400, 50}, motion);
+  ck_assert_int_eq(found.size(), 1);
+  ck_assert(found[0].id == 2 && found[0].motion == 0);
+  for (int n = 0; n < 24; ++n)
+    found = scene.frame({400, 50.0 + 4 * n}, {motion[0], motion_track(4, body_at(50 + 4 * n))});
+  ck_assert(found.size() == 2 && found[1].id == 3 && found[1].motion == 1);
+  scene.tracker.drop_tracks();
+  ck_assert_uint_eq(scene.tracker.publish_alone(4), 3);
+  ck_assert_uint_eq(scene.tracker.publish_alone(8), 2);
+  ck_assert_uint_eq(scene.tracker.publish_alone(10), 4);
+}
+END_TEST
+
 START_TEST(after_a_reset_nothing_is_known_and_no_identity_is_given_twice) {
   Scene scene;
   ck_assert(!walk(scene, 24, 4, kSure).back().empty());
   scene.tracker.reset();
   ck_assert(scene.frame({300}).empty());
   const auto found = walk(scene, 24, 4, kSure).back();
-  ck_assert(!found.empty() && found[0].id != kFirstOwn);
+  ck_assert(!found.empty() && found[0].id == 2);
 }
 END_TEST
 
@@ -543,6 +590,8 @@ int main() {
                     what_grows_by_a_quarter_within_a_second_has_moved,
                     a_frame_of_the_same_time_leaves_a_velocity_that_is_a_number,
                     an_identity_that_motion_gives_back_is_the_persons_again,
+                    identities_count_in_the_order_of_publication,
+                    what_has_been_published_alone_keeps_its_identity_when_looks_begin_and_when_they_end,
                     after_a_reset_nothing_is_known_and_no_identity_is_given_twice,
                     the_steady_state_allocates_nothing});
 }

@@ -18,7 +18,7 @@ namespace cerberus::vision {
 struct EvidenceTrack {
   static constexpr std::size_t kKept = 25;  // places of the last second
 
-  std::uint32_t id = 0;
+  std::uint32_t id = 0;         // 0: it has not been published yet
   std::uint32_t motion_id = 0;  // of the motion track that it was last matched with; 0: none
   // It is where that motion track is, and ends with it.
   bool mirrors = false;

@@ -11,9 +11,8 @@ namespace cerberus::vision {
 
 namespace {
 
-constexpr std::uint32_t kFirstOwn = 1000001;  // identity
-constexpr int kLevels = 3;                    // of the pyramids
-constexpr std::size_t kMostKnown = 256;       // motion tracks that are remembered
+constexpr int kLevels = 3;                // of the pyramids
+constexpr std::size_t kMostKnown = 1024;  // motion tracks that are remembered: more than there are at a time
 
 double visible_share(const Box& box, Size picture) {
   return share_within(box, {0, 0, double(picture.width), double(picture.height)});
@@ -34,12 +33,16 @@ Box scaled(const Box& box, double across, double down) {
 }  // namespace
 
 void EvidenceTracker::reset() {
-  tracks_.clear(), known_.clear(), results_.clear();
+  drop_tracks();
+  known_.clear();
+}
+
+void EvidenceTracker::drop_tracks() {
+  tracks_.clear(), results_.clear();
   number_ = look_number_ = 0;
   period_ = 0;
   looks_enclose_ = false;
   camera_stood_ = p_.still_time;
-  next_id_ = std::max(next_id_, kFirstOwn);
 }
 
 Box EvidenceTracker::reduced(const Box& box) const {
@@ -52,9 +55,22 @@ double EvidenceTracker::shown_time() const {
   return std::max(p_.shown, p_.looks_shown * period_);
 }
 
-void EvidenceTracker::go_on(std::uint32_t motion_id) {
-  for (EvidenceTrack& t : tracks_)
-    if (t.mirrors && t.motion_id == motion_id) t.published = true;
+EvidenceTracker::Known& EvidenceTracker::know(std::uint32_t motion_id) {
+  const auto found = std::ranges::find(known_, motion_id, &Known::motion_id);
+  if (found != known_.end()) {
+    std::rotate(found, found + 1, known_.end());
+  } else {
+    if (known_.size() == kMostKnown) known_.erase(known_.begin());
+    known_.push_back({motion_id});
+  }
+  return known_.back();
+}
+
+std::uint32_t EvidenceTracker::publish_alone(std::uint32_t motion_id) {
+  Known& known = know(motion_id);
+  known.published = true;
+  if (known.id == 0) known.id = ++last_id_;
+  return known.id;
 }
 
 void EvidenceTracker::begin_look() {
@@ -158,7 +174,6 @@ void EvidenceTracker::begin_at(const PersonDetection& body) {
   };
   if (std::ranges::any_of(tracks_, covers)) return;
   EvidenceTrack t = EvidenceTrack::begin(box);
-  t.id = next_id_++;
   t.person = t.hit = true;
   t.evidence = std::clamp(body.score - p_.unmoved, 0.0, p_.ceiling);
   t.quality = p_.quality_gain * body.score;
@@ -222,15 +237,11 @@ void EvidenceTracker::begin_mirror(const Track& motion) {
   const auto covers = [&](const EvidenceTrack& t) { return is_one_body(box, t.box(), {.nested = p_.apart}); };
   if (std::ranges::any_of(tracks_, covers)) return;
   EvidenceTrack t = EvidenceTrack::begin(box);
-  const auto taken = [&](std::uint32_t id) {
-    return std::ranges::find(tracks_, id, &EvidenceTrack::id) != tracks_.end();
-  };
-  t.id = taken(motion.id) ? next_id_++ : motion.id;
   t.evidence = p_.publish;
   t.motion_id = motion.id;
-  const auto known = std::ranges::find(known_, motion.id, &Known::motion_id);
-  if (known != known_.end() && !taken(known->id))
-    t.id = known->id, t.person = known->person, t.published = known->published;
+  const Known& known = know(motion.id);
+  if (known.id == 0 || std::ranges::find(tracks_, known.id, &EvidenceTrack::id) == tracks_.end())
+    t.id = known.id, t.person = known.person, t.published = known.published;
   mirror(t, motion);
   tracks_.push_back(t);
 }
@@ -316,12 +327,8 @@ void EvidenceTracker::remember_motion() {
   for (EvidenceTrack& t : tracks_) {
     t.keep(p_);
     if (t.motion_id == 0 || t.since_motion > 0) continue;
-    auto known = std::ranges::find(known_, t.motion_id, &Known::motion_id);
-    if (known == known_.end()) {
-      if (known_.size() == kMostKnown) known_.erase(known_.begin());
-      known = known_.insert(known_.end(), Known{t.motion_id});
-    }
-    known->id = t.id, known->person = t.person, known->published = t.published;
+    Known& known = know(t.motion_id);
+    known.id = t.id, known.person = t.person, known.published = t.published;
   }
 }
 
@@ -329,8 +336,9 @@ void EvidenceTracker::publish(std::span<const Track> motion) {
   results_.clear();
   const double across = static_cast<double>(frame_.size.width) / frame_.picture.width;
   const double down = static_cast<double>(frame_.size.height) / frame_.picture.height;
-  for (const EvidenceTrack& t : tracks_) {
+  for (EvidenceTrack& t : tracks_) {
     if (!t.published || (!t.mirrors && t.unseen > shown_time())) continue;
+    if (frame_.persons_only && !t.person) continue;
     const auto stands_for = [&](const EvidenceTrack& other) {
       return other.published && other.person && !other.holds_several &&
              share_within(other.box(), t.box()) >= p_.body.nested;
@@ -338,6 +346,7 @@ void EvidenceTracker::publish(std::span<const Track> motion) {
     if (t.holds_several && std::ranges::any_of(tracks_, stands_for)) continue;
     const Box box = inside(scaled(t.box(), across, down), frame_.size);
     if (box.width < 1 || box.height < 1) continue;
+    if (t.id == 0) t.id = ++last_id_;
     EvidenceResult r;
     r.id = t.id;
     r.box = box;
@@ -361,7 +370,10 @@ void EvidenceTracker::publish(std::span<const Track> motion) {
 std::span<const EvidenceResult> EvidenceTracker::update(const EvidenceFrame& frame,
                                                         std::span<const Track> motion,
                                                         const std::optional<EvidenceLook>& look) {
-  if (frame.fresh || next_id_ == 0 || frame.picture.size() != pictures_[present_].size()) reset();
+  if (frame.fresh)
+    reset();
+  else if (frame.picture.size() != pictures_[present_].size())
+    drop_tracks();
   frame_ = frame;
   present_ = 1 - present_, ++number_;
   Image<std::uint8_t>& picture = pictures_[present_];
@@ -383,8 +395,8 @@ std::span<const EvidenceResult> EvidenceTracker::update(const EvidenceFrame& fra
     for (EvidenceTrack& t : tracks_) t.mirrors = t.holds_several = false;
   if (look && look_number_ > 0) judge_look(*look);
   end_tracks();
-  remember_motion();
   publish(motion);
+  remember_motion();
   return results_;
 }
 

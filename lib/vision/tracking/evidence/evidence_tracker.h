@@ -21,13 +21,14 @@
 namespace cerberus::vision {
 
 struct EvidenceFrame {
-  double seconds = 0;  // since the previous frame
-  bool fresh = false;  // it begins a scene
-  Size size;           // pixels
-  GrayView picture;    // of the frame, reduced: of one size in a scene; copied
-  Transform motion;    // of the camera since the previous frame, frame pixels
-  bool still = false;  // the camera stands
-  double calm = 1;     // SceneCalm::share()
+  double seconds = 0;         // since the previous frame
+  bool fresh = false;         // it begins a scene
+  Size size;                  // pixels
+  GrayView picture;           // of the frame, reduced: of one size in a scene; copied
+  Transform motion;           // of the camera since the previous frame, frame pixels
+  bool still = false;         // the camera stands
+  double calm = 1;            // SceneCalm::share()
+  bool persons_only = false;  // tracks that no look has shown are not published
 };
 
 // What a look at an earlier frame has shown: one box for each body (hits_to_bodies()), frame pixels. A score of .5 is the least of a
@@ -59,21 +60,24 @@ class EvidenceTracker {
   explicit EvidenceTracker(const EvidenceParameters& parameters) : p_(parameters) {}
 
   void reset();
+  // The same, but motion tracks that have been published keep their identities, and stay published.
+  void drop_tracks();
   // The last frame of update() is looked at: the next look that is passed shows it.
   void begin_look();
-  // This motion track has been published before the first look: it stays so.
-  void go_on(std::uint32_t motion_id);
+  // The identity of a motion track that is published without update().
+  std::uint32_t publish_alone(std::uint32_t motion_id);
   // motion: tracks of what moves in this frame, published or not. Returns the tracks to be published, by identity; the
-  // span lives until the next call. Motion tracks keep their identities; those of others begin at 1000001.
+  // span lives until the next call. Identities count from 1 in the order of publication, and none is given twice.
   std::span<const EvidenceResult> update(const EvidenceFrame& frame, std::span<const Track> motion,
                                          const std::optional<EvidenceLook>& look = {});
   std::size_t bytes() const;
 
  private:
-  struct Known {  // of a motion track
-    std::uint32_t motion_id = 0, id = 0;
+  struct Known {                          // of a motion track
+    std::uint32_t motion_id = 0, id = 0;  // id 0: not published yet
     bool person = false, published = false;
   };
+  Known& know(std::uint32_t motion_id);
   double shown_time() const;
   Box reduced(const Box& box) const;
   bool inside_moves(const Box& box, bool calm) const;
@@ -93,7 +97,7 @@ class EvidenceTracker {
 
   EvidenceParameters p_;
   std::vector<EvidenceTrack> tracks_;
-  std::vector<Known> known_;
+  std::vector<Known> known_;  // those that were asked for last are at the end
   std::vector<EvidenceResult> results_;
   std::vector<PersonDetection> bodies_;  // of the look, reduced pixels
   std::vector<double> cost_;
@@ -109,7 +113,7 @@ class EvidenceTracker {
   double period_ = 0;              // s from look to look
   bool looks_enclose_ = false;     // EvidenceLook::encloses of the last one
   double camera_stood_ = 0;        // s
-  std::uint32_t next_id_ = 0;
+  std::uint32_t last_id_ = 0;      // that has been given
 };
 
 }  // namespace cerberus::vision
