@@ -8,8 +8,8 @@
 
 namespace cerberus::vision {
 
-int find_blocks(GrayView picture, int limit, int least, const BlockGrid& grid, int row,
-                std::span<std::uint64_t> bits, std::uint8_t* of) {
+int find_blocks(GrayView picture, int limit, const BlockGrid& grid, int row, std::span<std::uint64_t> bits,
+                std::uint8_t* of) {
   const auto words = static_cast<std::size_t>(grid.words);
   for (std::size_t line = 0; line < 2; ++line) {
     const int y = row * BlockGrid::kHeight + static_cast<int>(line) * BlockGrid::kStep;
@@ -21,10 +21,7 @@ int find_blocks(GrayView picture, int limit, int least, const BlockGrid& grid, i
   }
   int count = 0;
   for (std::size_t w = 0; w < words; ++w) {
-    const std::uint64_t found =
-        bits[w] | bits[words + w]
-            ? bytes_at_least(count_in_bytes(bits[w]) + count_in_bytes(bits[words + w]), least)
-            : 0;
+    const std::uint64_t found = bytes_above_zero(bits[w] | bits[words + w]);
     store_counts(found, of + w * BlockGrid::kWord);
     count += std::popcount(found);
   }

@@ -14,10 +14,9 @@ namespace cerberus::vision {
 // A row of blocks is padded to whole words of a bit mask: one word holds a sampled row of eight blocks, and one 64-bit
 // number holds their eight counts.
 struct BlockGrid {
-  static constexpr int kWidth = 8, kHeight = 4;         // pixels of a block
-  static constexpr int kWord = 64 / kWidth;             // blocks of a word
-  static constexpr int kStep = 2;                       // every second row of the picture is sampled
-  static constexpr int kPixels = kWidth * kHeight / 2;  // sampled, of a block
+  static constexpr int kWidth = 8, kHeight = 4;  // pixels of a block
+  static constexpr int kWord = 64 / kWidth;      // blocks of a word
+  static constexpr int kStep = 2;                // every second row of the picture is sampled
 
   Size size;                             // of the picture, pixels
   int columns = 0, rows = 0, words = 0;  // blocks in the picture; words of one row of the picture
@@ -33,17 +32,10 @@ struct BlockGrid {
   std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * stride() + x; }
 };
 
-// The number of set bits of each byte, 0..8: of a sampled row of eight blocks.
-inline std::uint64_t count_in_bytes(std::uint64_t bits) {
-  bits -= bits >> 1 & 0x5555555555555555u;
-  bits = (bits & 0x3333333333333333u) + (bits >> 2 & 0x3333333333333333u);
-  return (bits + (bits >> 4)) & 0x0f0f0f0f0f0f0f0fu;
-}
-
-// 1 in each byte that is at least `least` (1..127), else 0; bytes up to 127.
-inline std::uint64_t bytes_at_least(std::uint64_t bytes, int least) {
+// 1 in each byte that is not 0, else 0.
+inline std::uint64_t bytes_above_zero(std::uint64_t bytes) {
   constexpr std::uint64_t kOnes = 0x0101010101010101u;
-  return (bytes + kOnes * static_cast<std::uint64_t>(128 - least)) >> 7 & kOnes;
+  return (((bytes & 127 * kOnes) + 127 * kOnes) | bytes) >> 7 & kOnes;
 }
 
 inline std::uint64_t load_counts(const std::uint8_t* counts) {
@@ -55,9 +47,9 @@ inline void store_counts(std::uint64_t value, std::uint8_t* counts) {
   std::memcpy(counts, &value, sizeof value);
 }
 
-// of[i] := 1 for the blocks of a row of which at least `least` sampled pixels exceed `limit`, else 0. bits: scratch for
-// two rows of words. Returns their number.
-int find_blocks(GrayView picture, int limit, int least, const BlockGrid& grid, int row,
-                std::span<std::uint64_t> bits, std::uint8_t* of);
+// of[i] := 1 for the blocks of a row of which a sampled pixel exceeds `limit`, else 0. bits: scratch for two rows of words.
+// Returns their number.
+int find_blocks(GrayView picture, int limit, const BlockGrid& grid, int row, std::span<std::uint64_t> bits,
+                std::uint8_t* of);
 
 }  // namespace cerberus::vision

@@ -8,8 +8,7 @@ namespace cerberus::vision {
 
 namespace {
 
-constexpr int kWhole = 255;                                    // a share of 1
-constexpr std::uint8_t kCandidate = 1, kTaken = 2, kDone = 3;  // marks of a search
+constexpr int kWhole = 255;  // a share of 1
 
 }  // namespace
 
@@ -18,9 +17,8 @@ void BurntIn::reset() {
   edges_.reset();
   std::fill(foreground_.begin(), foreground_.end(), std::uint8_t{0});
   places_.clear();
-  found_ = published_ = {};
+  found_ = {};
   now_ = searched_ = 0;
-  standing_ = 0;
 }
 
 void BurntIn::prepare(Size size) {
@@ -46,8 +44,7 @@ bool BurntIn::is_active(const Place& p) const {
 
 // Grows a box to the left (step -1) or right by the columns that change, unless the blocks above or below change, too.
 void BurntIn::grow_row(Place& p, int step) {
-  const int top = std::max(p.top - parameters_.near, 0),
-            bottom = std::min(p.bottom + parameters_.near, grid_.rows);
+  const int top = std::max(p.top - 1, 0), bottom = std::min(p.bottom + 1, grid_.rows);
   const auto any = [&](int x, int from, int end, auto&& is) {
     for (int y = std::max(from, 0); y < std::min(end, grid_.rows); ++y)
       if (is(grid_.at(x, y))) return true;
@@ -55,7 +52,7 @@ void BurntIn::grow_row(Place& p, int step) {
   };
   const auto changes = [&](std::size_t b) { return changes_.changed(b); };
   const auto continues = [&](std::size_t b) {
-    return changes_.changed(b) || foreground_[b] > kWhole * parameters_.continues;
+    return changes_.changed(b) || foreground_[b] > kWhole * parameters_.often;
   };
   for (int x = step < 0 ? p.left - 1 : p.right, empty = 0;
        x >= 0 && x < grid_.columns && empty <= parameters_.gap; x += step) {
@@ -88,7 +85,7 @@ void BurntIn::grow_rows() {
 void BurntIn::average_foreground(GrayView mask) {
   for (int row = 0; row < grid_.rows; ++row) {
     const std::size_t begin = grid_.at(0, row);
-    find_blocks(mask, 0, parameters_.least_foreground, grid_, row, bits_, candidate_.data() + begin);
+    find_blocks(mask, 0, grid_, row, bits_, candidate_.data() + begin);
     for (std::size_t first = begin; first < begin + grid_.stride(); first += BlockGrid::kWord) {
       if (!load_counts(candidate_.data() + first) && !load_counts(foreground_.data() + first)) continue;
       for (std::size_t i = first; i < first + BlockGrid::kWord; ++i) {
@@ -107,15 +104,16 @@ bool BurntIn::is_quiet_around(const Place& p, bool still) const {
   if (still)
     for (int y = p.top; y < p.bottom; ++y)
       for (int x = p.left; x < p.right; ++x)
-        if (candidate_[grid_.at(x, y)]) begun = std::max(begun, changes_.since_begin(grid_.at(x, y)));
+        if (changes_.is_candidate(grid_.at(x, y)))
+          begun = std::max(begun, changes_.since_begin(grid_.at(x, y)));
   const auto goes_on = [&](std::size_t b) {
-    return foreground_[b] > kWhole * parameters_.continues || (still && changes_.since_change(b) <= begun);
+    return foreground_[b] > kWhole * parameters_.often || (still && changes_.since_change(b) <= begun);
   };
-  const int near = parameters_.near, far = parameters_.far, beside = still ? far : 0;
+  const int far = parameters_.far, beside = still ? far : 0;
   int going_on = 0, around = 0;
   for (int y = std::max(p.top - far, 0); y < std::min(p.bottom + far, grid_.rows); ++y)
     for (int x = std::max(p.left - beside, 0); x < std::min(p.right + beside, grid_.columns); ++x) {
-      if (x >= p.left - near && x < p.right + near && y >= p.top - near && y < p.bottom + near) continue;
+      if (x >= p.left - 1 && x <= p.right && y >= p.top - 1 && y <= p.bottom) continue;
       ++around;
       going_on += goes_on(grid_.at(x, y));
     }
@@ -126,11 +124,11 @@ bool BurntIn::changes_together(const Place& p) const {
   const auto for_candidates = [&](auto&& each) {
     for (int y = p.top; y < p.bottom; ++y)
       for (int x = p.left; x < p.right; ++x)
-        if (candidate_[grid_.at(x, y)]) each(changes_.since_change(grid_.at(x, y)));
+        if (changes_.is_candidate(grid_.at(x, y))) each(changes_.since_change(grid_.at(x, y)));
   };
   double newest = parameters_.keep;  // seconds ago; a candidate has changed later
   for_candidates([&](double ago) { newest = std::min(newest, ago); });
-  const double within = newest + parameters_.together_frames * period_;
+  const double within = newest + (parameters_.changes.change_frames + 0.5) * period_;
   int all = 0, together = 0;
   for_candidates([&](double ago) { ++all, together += ago <= within; });
   return together >= parameters_.together * all;
@@ -148,8 +146,8 @@ void BurntIn::grow_foreground(Place& p) const {
   const auto is_foreground = [&](int left, int top, int right, int bottom) {
     int n = 0;
     for (int y = top; y < bottom; ++y)
-      for (int x = left; x < right; ++x) n += foreground_[grid_.at(x, y)] > kWhole * parameters_.belongs;
-    return n > std::floor(parameters_.grows * std::max(right - left, bottom - top));
+      for (int x = left; x < right; ++x) n += foreground_[grid_.at(x, y)] > kWhole * parameters_.often;
+    return n > std::floor(parameters_.often * std::max(right - left, bottom - top));
   };
   for (const int step : {-1, 1})
     for (int x = step < 0 ? p.left - 1 : p.right, empty = 0;
@@ -167,66 +165,32 @@ void BurntIn::grow_foreground(Place& p) const {
   while (p.bottom < bottom && is_foreground(p.left, p.bottom, p.right, p.bottom + 1)) ++p.bottom;
 }
 
-// Marks the blocks with some evidence; returns whether one has enough.
-bool BurntIn::any_candidates(bool still) {
-  bool any = false;
-  for (std::size_t first = 0; first < candidate_.size(); first += BlockGrid::kWord) {
-    if (still) {
-      for (std::size_t i = first; i < first + BlockGrid::kWord; ++i)
-        any |= candidate_[i] = changes_.is_candidate(i);
-      continue;
-    }
-    const std::uint64_t candidates = edges_.candidates(first);
-    store_counts(candidates, candidate_.data() + first);
-    for (std::size_t i = first; candidates && i < first + BlockGrid::kWord; ++i) any |= edges_.is_strong(i);
+// The box of the candidates around (x0, y0) that are near one another, across gaps between digits. Takes their marks.
+BurntIn::Place BurntIn::take_component(int x0, int y0) {
+  Place place{x0, y0, x0 + 1, y0 + 1};
+  for (bool grown = true; grown;) {
+    grown = false;
+    const int gap = parameters_.gap, left = std::max(place.left - gap, 0),
+              right = std::min(place.right + gap, grid_.columns);
+    for (int y = std::max(place.top - 1, 0); y < std::min(place.bottom + 1, grid_.rows); ++y)
+      for (int x = left; x < right; ++x) {
+        if (!candidate_[grid_.at(x, y)]) continue;
+        candidate_[grid_.at(x, y)] = 0;
+        place.left = std::min(place.left, x), place.top = std::min(place.top, y);
+        place.right = std::max(place.right, x + 1), place.bottom = std::max(place.bottom, y + 1);
+        grown = true;
+      }
   }
-  return any;
-}
-
-// Whether a candidate is connected with a block that was taken, across gaps between digits.
-bool BurntIn::touches_taken(int x, int y) const {
-  const int gap = parameters_.gap;
-  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, grid_.rows - 1); ++v)
-    for (int u = std::max(x - gap, 0); u <= std::min(x + gap, grid_.columns - 1); ++u)
-      if (candidate_[grid_.at(u, v)] == kTaken) return true;
-  return false;
-}
-
-// The box of the candidates that are connected with (x0, y0), found by sweeps over the box, as far as it has grown, and
-// its neighbours: needs no memory beside the marks. count: of its blocks; strong: one has enough evidence.
-BurntIn::Place BurntIn::take_component(int x0, int y0, bool still, int& count, bool& strong) {
-  Place place{x0, y0, x0, y0};
-  const auto take = [&](int x, int y) {
-    candidate_[grid_.at(x, y)] = kTaken;
-    ++count;
-    strong |= still || edges_.is_strong(grid_.at(x, y));
-    place = {std::min(place.left, x), std::min(place.top, y), std::max(place.right, x + 1),
-             std::max(place.bottom, y + 1)};
-  };
-  count = 0, strong = false;
-  take(x0, y0);
-  for (int before = 0; before < count;) {
-    before = count;
-    const int gap = parameters_.gap, top = std::max(place.top - 1, 0), left = std::max(place.left - gap, 0);
-    for (int y = top; y < std::min(place.bottom + 1, grid_.rows); ++y)
-      for (int x = left; x < std::min(place.right + gap, grid_.columns); ++x)
-        if (candidate_[grid_.at(x, y)] == kCandidate && touches_taken(x, y)) take(x, y);
-  }
-  for (int y = place.top; y < place.bottom; ++y)
-    for (int x = place.left; x < place.right; ++x)
-      if (std::uint8_t& c = candidate_[grid_.at(x, y)]; c == kTaken) c = kDone;
   return place;
 }
 
 void BurntIn::search(bool still) {
-  if (!any_candidates(still)) return;
+  for (std::size_t i = 0; i < candidate_.size(); ++i)
+    candidate_[i] = still ? changes_.is_candidate(i) : edges_.is_candidate(i);
   for (int y = 0; y < grid_.rows; ++y)
     for (int x = 0; x < grid_.columns; ++x) {
-      if (candidate_[grid_.at(x, y)] != kCandidate) continue;
-      int count = 0;
-      bool strong = false;
-      Place place = take_component(x, y, still, count, strong);
-      if (count < parameters_.least_blocks || !strong) continue;
+      if (!candidate_[grid_.at(x, y)]) continue;
+      Place place = take_component(x, y);
       if (!still) grow_foreground(place);
       if (is_too_large(place) || !is_quiet_around(place, still)) continue;
       if (still && !changes_together(place)) continue;
@@ -253,18 +217,18 @@ void BurntIn::add(const Place& found) {
 }
 
 // compared: static edges were compared in this frame.
-void BurntIn::forget(double seconds, bool compared) {
+void BurntIn::forget(double seconds, bool still, bool compared) {
   for (Place& p : places_) {
-    if (p.changes && standing_ > 0) p.quiet += seconds;
+    if (p.changes && still) p.quiet += seconds;
     if (!compared) continue;
     int fixed = 0, moved = 0;
     for (int y = p.top; y < p.bottom; ++y)
       for (int x = p.left; x < p.right; ++x)
         fixed += edges_.fixed(grid_.at(x, y)), moved += edges_.moved(grid_.at(x, y));
-    if (edges_.has_edges(fixed) && parameters_.contrary * fixed >= moved)
-      p.against = 0;
-    else if (edges_.has_edges(moved))
+    if (edges_.is_contrary(fixed, moved))
       p.against += seconds;
+    else if (fixed > 0)
+      p.against = 0;
   }
   std::erase_if(places_, [&](const Place& p) {
     if (p.quiet <= parameters_.keep && p.against <= parameters_.keep_against) return false;
@@ -303,31 +267,23 @@ void BurntIn::publish(double seconds) {
   }
 }
 
-// Seconds since the last frame, guessed where they are not known.
-double BurntIn::measure_time(double seconds) {
-  if (!(seconds > 0)) seconds = period_ > 0 ? period_ : parameters_.usual_period;
-  period_ = period_ > 0 ? period_ + parameters_.period_rate * (seconds - period_) : seconds;
-  return seconds;
-}
-
 void BurntIn::look_for(const BurntInInput& in, GrayView mask, double seconds) {
   const bool compared = edges_.compare(in.picture);
   average_foreground(mask);
   search(in.still);
-  forget(seconds, compared);
-  edges_.renew(in.picture, now_, period_);
-  changes_.forget_old();
+  forget(seconds, in.still, compared);
+  edges_.renew(in.picture, now_);
   publish(seconds);
 }
 
 bool BurntIn::update(const BurntInInput& in, MutableGrayView mask) {
   prepare(mask.size());
-  now_ += measure_time(in.seconds);
+  if (in.seconds > 0) period_ = in.seconds;
+  now_ += period_;
   changes_.set_time(now_, period_);
+  const std::size_t before = found_.count;
   found_.is_new.reset();
-  standing_ = in.still ? standing_ + 1 : 0;
-  if (in.still && standing_ > parameters_.standing && changes_.update(in.difference, in.threshold))
-    grow_rows();
+  if (in.still && changes_.update(in.difference, in.threshold)) grow_rows();
   edges_.follow(in.motion);
   const double since = now_ - searched_;
   if (since >= parameters_.search_period - period_ / 2) {
@@ -335,15 +291,7 @@ bool BurntIn::update(const BurntInInput& in, MutableGrayView mask) {
     look_for(in, mask, since);
   }
   clear_boxes(boxes(), mask);
-  return is_changed();
-}
-
-bool BurntIn::is_changed() {
-  bool same = found_.count == published_.count;
-  for (std::size_t i = 0; same && i < found_.count; ++i)
-    same = intersection_over_union(found_.box[i], published_.box[i]) >= parameters_.same_box;
-  if (!same) published_ = found_;
-  return !same;
+  return found_.count != before;
 }
 
 std::size_t BurntIn::bytes() const {
