@@ -4,15 +4,12 @@
 // membership function does not matter: a set and its complement have the same index of fuzziness.
 //
 // The choice compares indices that are often exactly equal: a set of one level has index 1 with any empty level added.
-// Rounding must not decide there. Doubles decide only outside their error bound. Inside it, linear weighting of order 1
-// compares the indices as fractions of integers; the other settings, whose indices are irrational, call it a tie.
+// Rounding must not decide there: within the error bound of doubles it is a tie.
 #include "vision/change/fuzzy_threshold.h"
 
 #include <algorithm>
 #include <cmath>
 #include <compare>
-
-#include "vision/change/wide_integer.h"
 
 namespace cerberus::vision {
 
@@ -36,12 +33,6 @@ double sum(const Weights& g, int first, int last) {
   for (int x = first; x <= last; ++x) total += g[x];
   return total;
 }
-
-struct Fraction {
-  WideInteger numerator, denominator;
-
-  double to_double() const { return numerator.to_double() / denominator.to_double(); }
-};
 
 // The levels of one seed and the index of fuzziness of this set, alone and with one more level.
 class SeedSet {
@@ -81,23 +72,6 @@ class SeedSet {
         if (g_[x] > 0) total += g_[x] * power(delta(x - first_, b, width));
       return total;
     });
-  }
-
-  // psi_1 of linear weighting as a fraction of integers. With s = sum g, t = sum x g, W = s (c - b):
-  // psi = sum g (W - |x s - t|)^2 / (s W^2). s < 2^40 and W < 2^48, so both parts stay below 2^136.
-  Fraction exact_psi(int extra = kNoExtra) const {
-    std::uint64_t s = 0, t = 0;
-    for_each(extra, [&](std::uint64_t x, std::uint64_t g) { s += g, t += x * g; });
-    const auto distance = [&](std::uint64_t x) { return x * s > t ? x * s - t : t - x * s; };
-    const Extent e = extent(extra);
-    const std::uint64_t width = std::max(distance(e.low), distance(e.high));
-    if (width == 0) return {0, 1};
-    WideInteger total;
-    for_each(extra, [&](std::uint64_t x, std::uint64_t g) {
-      const WideInteger d = width - distance(x);
-      total += d * d * g;
-    });
-    return {total, WideInteger(width) * width * s};
   }
 
  private:
@@ -149,15 +123,6 @@ class SeedSet {
     return part(0, split, 1) + part(split, count, -1);
   }
 
-  template <typename Function>
-  void for_each(int extra, Function&& function) const {
-    const auto call = [&](int x) {
-      if (g_[x] > 0) function(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(g_[x]));
-    };
-    for (int x = first_; x <= last_; ++x) call(x);
-    if (extra != kNoExtra) call(extra);
-  }
-
   const Weights& g_;
   const FuzzyThresholdOptions& options_;
   int lowest_, highest_;  // of the histogram
@@ -169,37 +134,20 @@ class SeedSet {
 // The indices of the two seeds, their ratio, and which of two widened sets is the less fuzzy.
 class Comparison {
  public:
-  Comparison(const SeedSet& background, const SeedSet& object, const FuzzyThresholdOptions& options,
-             FuzzyThresholdCurves& curves)
-      : background_(background),
-        object_(object),
-        exact_(options.weighting == Weighting::linear && options.order == 1),
-        curves_(curves) {
-    if (exact_) {
-      exact_background_ = background.exact_psi(), exact_object_ = object.exact_psi();
-      curves.psi_background = exact_background_.to_double(), curves.psi_object = exact_object_.to_double();
-    } else {
-      curves.psi_background = index(background), curves.psi_object = index(object);
-    }
-    if (curves.psi_background > 0 && curves.psi_object > 0) {
-      curves.alpha = curves.psi_object / curves.psi_background;  // Eq. 10
-      relative_error_ =
-          kTermError / std::sqrt(curves.psi_background) + kTermError / std::sqrt(curves.psi_object);
-    } else {
-      exact_background_ = exact_object_ = {1, 1};
-    }
+  Comparison(const SeedSet& background, const SeedSet& object, FuzzyThresholdCurves& curves)
+      : curves_(curves) {
+    curves.psi_background = index(background), curves.psi_object = index(object);
+    if (!(curves.psi_background > 0 && curves.psi_object > 0)) return;
+    curves.alpha = curves.psi_object / curves.psi_background;  // Eq. 10
+    relative_error_ =
+        kTermError / std::sqrt(curves.psi_background) + kTermError / std::sqrt(curves.psi_object);
   }
 
   // The order of omega and beta at level x. Equal: a tie.
   std::partial_ordering operator()(int x) const {
     const double omega = curves_.omega[x], beta = curves_.beta[x];
     const double error = kIndexError * (1 + curves_.alpha) + relative_error_ * beta;
-    if (std::abs(omega - beta) > error) return omega <=> beta;
-    if (!exact_) return std::partial_ordering::equivalent;
-    // omega <=> (object / background) beta', in fractions
-    const Fraction o = object_.exact_psi(x), b = background_.exact_psi(x);
-    return o.numerator * exact_background_.numerator * exact_object_.denominator * b.denominator <=>
-           b.numerator * exact_object_.numerator * exact_background_.denominator * o.denominator;
+    return std::abs(omega - beta) > error ? omega <=> beta : std::partial_ordering::equivalent;
   }
 
  private:
@@ -208,11 +156,8 @@ class Comparison {
     return psi < kZeroIndex ? 0 : psi;
   }
 
-  const SeedSet &background_, &object_;
-  bool exact_;
   const FuzzyThresholdCurves& curves_;
-  Fraction exact_background_, exact_object_;  // 1 where alpha is 1 for want of an index
-  double relative_error_ = 0;                 // of alpha
+  double relative_error_ = 0;  // of alpha
 };
 
 // Step 0: the level above which so few pixels lie that one hot pixel would stretch the whole scale.
@@ -290,7 +235,7 @@ int fuzzy_threshold(const Histogram& histogram, const FuzzyThresholdOptions& opt
   c.seed_high = r;
 
   const SeedSet background(g, options, c, lowest, j), object(g, options, c, r, highest);
-  const Comparison compare(background, object, options, c);
+  const Comparison compare(background, object, c);
   for (int x = j + 1; x < r; ++x) {
     c.beta[x] = c.alpha * background.psi(x);
     c.omega[x] = object.psi(x);

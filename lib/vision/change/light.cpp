@@ -20,18 +20,15 @@ constexpr int kMaximumBands = 512;             // pictures of more bands are not
 // Origin unknown: kept from the first version. Guard of all: unit-light, and flicker and bands in unit-foreground_mask.
 constexpr struct Parameters {
   // The picture as a whole: a line through the median differences of brightness classes.
-  int least_picture = 64;         // samples: fewer determine nothing
   int least_class = 100;          // 1/n of the samples: a smaller class does not count
   double clipped = 4;             // grey levels: a class at or below was possibly clipped
   int rounds = 6;                 // of reweighting
   double ridge = 10 * 10;         // grey levels squared: strength of the prior that black stays black
-  double least_mean = 16.0;       // grey levels, of the picture's mean in that prior
   int agrees = 8;                 // grey levels: a sample so close to the line agrees with it
   double dark = 48, light = 208;  // grey levels between which a change counts
   double least_global = 0.7;      // grey levels: a change that is smaller there is not compensated
   double least_gain = 0.25, most_gain = 4.0;  // of a change of light
   // Bands of rows.
-  int least_bands = 4;      // in a picture that is searched for them
   int least_of_third = 8;   // samples of a third of a band that counts
   int least_samples = 12;   // samples of a band that counts
   double least_band = 1.0;  // grey levels: weaker bands are not compensated
@@ -143,7 +140,7 @@ bool LightChange::estimate_global(const LightSamples& samples) {
   int total = 0;
   for (const int n : number) total += n;
   const Parameters& p = kParameters;
-  if (total < p.least_picture) return false;
+  if (total == 0) return false;
 
   struct Entry {
     double a, e, weight;
@@ -175,7 +172,7 @@ bool LightChange::estimate_global(const LightSamples& samples) {
       sae += w[i] * da * (points[i].e - offset);
     }
     // A prior that black stays black to within the noise.
-    slope = (sae + p.ridge * sw * offset / std::max(mean, p.least_mean)) / (saa + p.ridge * sw);
+    slope = (sae + p.ridge * sw * offset / std::max(mean, p.clipped)) / (saa + p.ridge * sw);
     for (int i = 0; i < used; ++i) {
       const double r = points[i].e - offset - slope * (points[i].a - mean);
       w[i] = points[i].weight / (1 + r * r);
@@ -237,7 +234,7 @@ double LightChange::excess_of_band(const LightSamples& samples, int band) const 
 // Estimates the bands. Returns true if there are any.
 bool LightChange::estimate_bands(const LightSamples& samples) {
   const int bands = samples.bands();
-  if (bands < kParameters.least_bands || bands > kMaximumBands) return false;
+  if (bands < 2 || bands > kMaximumBands) return false;
   std::array<double, kMaximumBands> excess;  // gain of the band, minus 1
   std::bitset<kMaximumBands> known;
   double strongest = 0;

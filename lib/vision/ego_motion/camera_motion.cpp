@@ -157,12 +157,12 @@ MotionFit CameraMotion::State::fit_on(int level, const MotionSamples& samples,
   const MotionModel model = level > 0 ? std::min(options.model, MotionModel::similarity) : options.model;
   const bool top = level == top_level(size);  // finer levels start from its result
   const MotionFit fit = fit_motion(samples, model, size, guesses, top ? q.hypotheses : q.finer_hypotheses,
-                                   top ? q.turns : 0, known);
+                                   top ? q.finer_hypotheses : 0, known);
   // On a coarse level a turn is fitted only if its bend would mislead the finer levels: their search covers a few
   // pixels around the guess.
   const bool turns =
       model == MotionModel::similarity && (level == 0 || !fit.transform.is_affine() ||
-                                           mean_motion(fit.transform, size) > q.bent_at_once * (1 << level));
+                                           mean_motion(fit.transform, size) > q.large_motion * (1 << level));
   if (!turns) return fit;
   MotionFit turned = fit_turn(samples, size, fit, known);
   turned.rival = fit.rival;
@@ -187,7 +187,7 @@ MotionFit CameraMotion::State::fit_beyond(const Transform& prior, int level, con
 bool CameraMotion::State::is_cut(const Shift& shift) const {
   const CameraMotionParameters& q = kParameters;
   const double before = reference_relief.contrast(), now = current_relief.contrast();
-  if (sites.count < PatchMatches::kLeast) return now > q.new_contrast * before + 1;
+  if (sites.count < PatchMatches::kLeast) return now > q.cut_contrast * before + 1;
   return share.well < q.cut_share && (shift.difference > q.cut_difference || before > q.cut_contrast * now);
 }
 
@@ -207,7 +207,7 @@ std::optional<MotionFit> CameraMotion::State::standing(const MotionSamples& samp
   const CameraMotionParameters& q = kParameters;
   if (options.model == MotionModel::none) return rate_motion(samples, {});
   const double motion = mean_motion(fit.transform, reference.size());
-  if (share.all > q.certain_share && motion > q.certain_motion) return std::nullopt;
+  if (share.all > q.nearly_all && motion > q.certain_motion) return std::nullopt;
   const bool anew = still && motion > q.large_motion;
   const MotionFit none = anew ? rate_motion(found_in_place().samples(), {}) : rate_motion(samples, {});
   const auto stands = [&] {
@@ -216,12 +216,12 @@ std::optional<MotionFit> CameraMotion::State::standing(const MotionSamples& samp
     // no motion in many places.
     const bool contested = fit.rival.has_value();
     const double here = contested ? none.ground : none.support, there = contested ? fit.ground : fit.support;
-    if (motion > q.large_motion) return here > (still ? q.stays : q.stops) * there;
+    if (motion > q.large_motion) return here > (still ? q.majority : q.nearly_all) * there;
     // Leaving "still" needs strong support; slow motion accumulates against the kept reference.
-    if (still && (contested || share.all < q.leaves)) return true;
+    if (still && (contested || share.all < q.majority)) return true;
     // A small motion counts as none if it explains the samples hardly better than no motion does.
     const double unexplained = fit.agreeing > 1 ? fit.cost / fit.agreeing : 1;
-    return none.support > q.as_supported * fit.support &&
+    return none.support > q.nearly_all * fit.support &&
            none.cost - fit.cost < q.worth * std::max(1.0, unexplained);
   };
   return stands() ? std::optional(none) : std::nullopt;
@@ -309,7 +309,7 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   const int top = top_level(size);
   const std::array<Shift, 2> shifts = ShiftSearch{}.run(reference_relief, current_relief);
   Transform motion = first_guess(matches, top, shifts, prior);
-  const bool bent = prior && bend(*prior, size) > kParameters.bent;
+  const bool bent = prior && bend(*prior, size) > kParameters.still_motion;
   MotionFit fit;
   std::optional<Transform> rival;  // second guess for the patches of the next level
   share = {};

@@ -12,30 +12,23 @@ struct CameraMotionParameters {
   int reference_age = 16;     // frames after which the reference of a still camera is renewed
   double noise_share = 0.1;   // of a frame's measured noise in the running mean
   double majority = 0.6;      // share of the patches that no other motion can outvote
-  double bent = 0.2;          // pixels: a smaller bend of the prior is neglected
-  double bent_at_once = 1;    // pixels of the level: the bend of a smaller turn is negligible there
   int hypotheses = 96;        // random ones on the coarsest level,
-  int finer_hypotheses = 24;  // on the others, which start from its result
-  int turns = 24;             // random turns on the coarsest level
+  int finer_hypotheses = 24;  // on the others, which start from its result, and random turns on the coarsest
   int goes_on = 50;           // frames: duration of a turn past a wall without texture
 
   // A cut. measured: 1440 pairs of unrelated real pictures, share.well at most .20, difference at least .77; 2309 pairs
   // of successive ones, share.well at least .32; half the picture replaced: share.well at least .26 in 95 of 100.
   double cut_share = 0.22;      // of the patches: fewer are well matched
   double cut_difference = 0.6;  // of the relief: the pictures as a whole differ by more
-  double cut_contrast = 4;      // times less contrast than before
-  double new_contrast = 3;      // times more contrast than a reference without texture
+  double cut_contrast = 4;      // times less contrast than before, or more than a reference without texture
 
   // A camera that stands. Motions are pixels, RMS over the picture.
-  double still_motion = 0.2;    // a still camera remains still below it,
-  double least_motion = 0.1;    // and any camera stands below it
-  double large_motion = 1;      // beyond it the support of no motion decides alone
-  double certain_share = 0.9;   // of the patches that follow a motion beyond
-  double certain_motion = 0.5;  // this one: it is the camera's
-  double stays = 0.6;           // of the motion's support that no motion needs for a still camera,
-  double stops = 0.85;          // and for a moving one
-  double leaves = 0.5;          // of the patches that a still camera's small motion needs
-  double as_supported = 0.9;    // of the motion's support: no motion explains the samples as well,
+  double still_motion = 0.2;  // a still camera remains still below it,
+  double least_motion = 0.1;  // and any camera stands below it
+  double large_motion = 1;  // beyond it the support of no motion decides alone, and a turn bends the picture
+  double certain_motion = 0.5;  // beyond it a motion that `nearly_all` patches follow is the camera's
+  double nearly_all = 0.9;      // of the motion's support: no motion explains the samples as well,
+                                // or a moving camera stops
   double worth = 12;            // unless its cost is so much higher, in unexplained costs
 
   // Parts of the picture (of MotionSamples::kRegions) that must follow.

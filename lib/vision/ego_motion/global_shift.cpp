@@ -19,7 +19,6 @@ constexpr int kStride = 96, kBorder = 16;  // of the later picture: 16 columns l
 constexpr struct Parameters {
   double mean_relief = 24;  // grey levels: mean amount to which a relief is amplified,
   double most_gain = 12;    // by this factor at most
-  int least_side = 8;       // pixels: a smaller picture is not searched
   int reach = 4;            // 1/n of either side: the largest shift
   int apart = 2;            // pixels in either direction: a second shift so close is the first
 } kParameters;
@@ -61,7 +60,7 @@ void Relief::build(GrayView picture) {
 std::array<Shift, 2> ShiftSearch::run(const Relief& earlier, const Relief& later) {
   const Parameters& q = kParameters;
   const Size size = earlier.size();
-  if (size != later.size() || std::min(size.width, size.height) < q.least_side) return {};
+  if (size != later.size() || size.area() == 0) return {};
   const int rx = std::min(size.width / q.reach, kBorder), ry = std::min(size.height / q.reach, kBorder);
   const int columns = 2 * rx + 1, rows = 2 * ry + 1;
   alignas(64) std::array<std::uint8_t, kStride * Relief::kMaxSide> bordered;  // for every shift

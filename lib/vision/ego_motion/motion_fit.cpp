@@ -43,7 +43,6 @@ constexpr struct Parameters {
 
   // Memory of the lens.
   double remembered = 0.97;  // share that is kept from frame to frame
-  double most_earned = 10;   // times bend_earns, at most
 } kParameters;
 
 double support_of(const Agreement& agreement) {
@@ -293,7 +292,7 @@ void LensBend::learn(const LensBend& seen) {
   const Parameters& q = kParameters;
   constexpr double kContradicts = kGate;
   information *= q.remembered;
-  earned = std::clamp(q.remembered * earned + seen.earned, 0.0, q.most_earned * q.bend_earns);
+  earned = std::max(q.remembered * earned + seen.earned, 0.0);
   if (!(seen.information > 0)) return;
   const double apart = seen.bend - bend;
   if (information > 0 && apart * apart > kContradicts * (1 / information + 1 / seen.information))

@@ -12,13 +12,12 @@ namespace {
 // Standard deviations of the priors over the half diagonal. Origin unknown: kept from the first version. Guard:
 // bench-camera_motion and tests/unit/motion_least_squares.
 constexpr struct Parameters {
-  double free = 10;           // of the shift: not limited
-  double linear = 0.1;        // of zoom, roll and the rest of the linear part
-  double perspective = 0.03;  // of the perspective part
-  double rolling = 0.02;      // of the effect of a rolling shutter under acceleration
+  double free = 10;     // of the shift: not limited
+  double linear = 0.1;  // of zoom, roll and the rest of the linear part
+  double bending =
+      0.02;  // of the perspective part, and of the effect of a rolling shutter under acceleration
 } kParameters;
-constexpr double kFree = kParameters.free, kLinear = kParameters.linear,
-                 kPerspective = kParameters.perspective, kRolling = kParameters.rolling;
+constexpr double kFree = kParameters.free, kLinear = kParameters.linear, kBending = kParameters.bending;
 
 }  // namespace
 
@@ -134,8 +133,8 @@ bool MotionLeastSquares::step(MotionModel model, const MotionNormal& normal, Tra
                                                        {kLinear, 3},
                                                        {kLinear, 4},
                                                        {kLinear, 5},
-                                                       {kPerspective, 6},
-                                                       {kPerspective, 7}}};
+                                                       {kBending, 6},
+                                                       {kBending, 7}}};
   switch (model) {
     case MotionModel::none:
       return false;
@@ -177,7 +176,7 @@ bool MotionLeastSquares::step_turned(const MotionNormal& normal, Shutter shutter
   const Point moved = t.apply({cx_, cy_});
   const double tx = (moved.x - cx_) / scale_, ty = (moved.y - cy_) / scale_;
   const Unknown x{kFree, 0}, y{kFree, 1}, zoom{kLinear, 2, 1, 5, 1}, roll{kLinear, 3, -1, 4, 1},
-      shear{kRolling, 3}, stretch{kRolling, 5}, bend{kMostBend, 6, -tx, 7, -ty};
+      shear{kBending, 3}, stretch{kBending, 5}, bend{kMostBend, 6, -tx, 7, -ty};
   if (shutter == Shutter::global) return step_turned<5>(std::array{x, y, zoom, roll, bend}, normal, lens, t);
   return step_turned<7>(std::array{x, y, zoom, roll, shear, stretch, bend}, normal, lens, t);
 }
