@@ -44,13 +44,13 @@ typedef enum {
  * CerberusRegion:
  * @id: identity of the track (from 1, stable over frames) if @tracked, else a number within the frame
  * @tracked: @id, @vx, @vy, @age and @state come from a tracker
- * @person: a person detector has shown it: that of `personverify`, or another element's whose boxes a tracker has taken
+ * @person: looks of a person detector show it: those of `personverify`, or another element's whose boxes a tracker takes
  * @kind: what it is by its size
  * @x: left edge, frame pixels
  * @y: top edge, frame pixels
  * @width: frame pixels
  * @height: frame pixels
- * @confidence: that it is one whole object, 0 to 1; of a person of `personverify` the evidence for it, 0 to 1
+ * @confidence: that it is one whole object, 0 to 1; of a person of `personverify` the evidence of looks for it, 0 to 1
  * @vx: speed to the right, frame pixels a second, the camera's motion taken out
  * @vy: speed downwards, frame pixels a second, the camera's motion taken out; both as the video is played: backwards
  *     they are the other way round

@@ -26,12 +26,12 @@
  * - `camera`: where the picture went from the previous frame to this one, a homography in row-major order, in
  *   pixels of this frame; `confidence`: 0 to 1. Both are null where no element upstream measured it.
  * - `objects`: null where no detector ran upstream, [] where one found nothing. `id` is the track's identity, null for a region without a tracker; `type` is `motion`
- *   (`person` where a person detector has shown it); `kind` is `person-like`, `group`, `part` or `thing`, by
+ *   (`person` while looks of a person detector show it); `kind` is `person-like`, `group`, `part` or `thing`, by
  *   its size and the people of the scene; `state` is `seen`, `coasted` or `stopped`; `x`, `y`, `w`, `h`:
  *   pixels of the frame; `vx`, `vy`: pixels a second, camera motion taken out (of a stream without time stamps and
  *   frame rate: at 25 frames a second); `bearing`: degrees from the camera's axis, whatever the head's pose, positive to
  *   the right; `distance`: metres; `witnesses`: `motion` where a track of what moves has its place, or has had it within
- *   the last second, `person` where a person detector has shown it.
+ *   the last second, `person` while looks of a person detector show it.
  *
  * Keys that are there only where their values are known, after `frame`:
  * - `utc`: wall-clock time of the frame, ISO 8601; `utc-source`: `reference-timestamp` (the buffer carries one, as of

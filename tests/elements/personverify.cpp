@@ -116,7 +116,7 @@ void expect_place(const CerberusRegion& r, double x) {
 GST_START_TEST(a_track_that_is_a_person_is_published_as_one) {
   for (const char* detector : {"detector=daimler", "detector=hog"}) {
     Verifier verifier(detector);
-    const auto found = regions_after(verifier, 10, {140}, false, {person_track(7, 140)});
+    const auto found = regions_after(verifier, 50, {100}, false, {person_track(7, 100)});
     fail_unless_equals_int(found.size(), 1);
     fail_unless(found[0].person && found[0].tracked, "%s", detector);
     fail_unless_equals_int(found[0].id, 1);

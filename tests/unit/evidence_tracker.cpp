@@ -358,6 +358,80 @@ START_TEST(a_doubtful_look_makes_no_person_of_what_moves) {
 }
 END_TEST
 
+namespace {
+
+// A motion track walks, and looks show it as they are asked to: one score each, nothing for 0. Returns the last results.
+std::vector<EvidenceResult> walk_past(const std::vector<double>& scores, const Box& box = body_at(100)) {
+  Scene scene;
+  std::vector<PersonDetection> seen;
+  std::vector<EvidenceResult> last;
+  int look = 0;
+  bring(scene, {box.x - kGone, box.y, box.width, box.height}, box);
+  for (int n = 0; look <= static_cast<int>(scores.size()); ++n) {
+    const Box now{box.x + n, box.y, box.width, box.height};
+    std::optional<std::vector<PersonDetection>> late;
+    if (n % kLook == 1) late = seen;
+    const auto found = scene.frame({now.x}, {motion_track(7, now, 1 / kSeconds)}, late);
+    last.assign(found.begin(), found.end());
+    if (n % kLook != 0) continue;
+    seen.clear();
+    if (look < static_cast<int>(scores.size()) && scores[look] > 0) seen.push_back({now, scores[look]});
+    if (++look <= static_cast<int>(scores.size())) scene.look();
+  }
+  ck_assert_int_eq(last.size(), 1);
+  return last;
+}
+
+}  // namespace
+
+START_TEST(one_look_at_the_threshold_makes_no_person_of_what_moves_and_some_do) {
+  ck_assert(!walk_past({.55})[0].person);
+  ck_assert(walk_past({.75, .75, .75})[0].person);
+  ck_assert(walk_past({kSure})[0].person);
+}
+END_TEST
+
+START_TEST(a_person_whom_looks_show_no_more_becomes_what_only_moves) {
+  ck_assert(walk_past({kSure, 0})[0].person);  // a look may miss somebody
+  ck_assert(!walk_past({kSure, 0, 0, 0, 0, 0, 0, 0})[0].person);
+  ck_assert(walk_past({kSure, 0, 0, 0, 0, 0, 0, 0, kSure})[0].person);
+  ck_assert(walk_past({kSure, 0, kSure, 0, 0, kSure, 0, kSure, 0, 0})[0].person);
+}
+END_TEST
+
+START_TEST(the_confidence_of_a_person_is_what_looks_say) {
+  const double one = walk_past({kSure})[0].confidence, two = walk_past({kSure, kSure})[0].confidence,
+               missed = walk_past({kSure, kSure, 0})[0].confidence,
+               many = walk_past({kSure, kSure, kSure, kSure})[0].confidence;
+  ck_assert(0 < one && one < two && missed < two && missed > 0 && many == 1);
+}
+END_TEST
+
+// At the picture's edge a detector sees nobody.
+START_TEST(looks_that_cannot_see_a_person_say_nothing) {
+  const Box cut{100, 0, 80, 240};
+  ck_assert(walk_past({kSure, 0, 0, 0, 0, 0, 0, 0}, cut)[0].person);
+}
+END_TEST
+
+// A detector does not see who has become smaller than it sees people.
+START_TEST(who_goes_away_from_the_camera_stays_a_person) {
+  Scene scene;
+  bring(scene, body_at(200 - kGone), body_at(200));
+  std::span<const EvidenceResult> found;
+  for (int n = 0; n < 96; ++n) {
+    const double height = 240 * std::pow(.99, n);
+    const Box box{240 - height / 6, 360 - height, height / 3, height};
+    std::optional<std::vector<PersonDetection>> late;
+    if (n % kLook == 1)
+      late = n < 24 ? std::vector<PersonDetection>{{box, kSure}} : std::vector<PersonDetection>{};
+    found = scene.frame({200}, {motion_track(7, box)}, late);
+    if (n % kLook == 0) scene.look();
+  }
+  ck_assert(found.size() == 1 && found[0].person);
+}
+END_TEST
+
 START_TEST(who_is_shown_once_a_second_is_published_all_the_time) {
   Scene scene;
   scene.calm = 0.4, scene.still = false;
@@ -583,6 +657,11 @@ int main() {
                     who_stops_is_stopped_and_who_goes_on_is_seen_again,
                     looks_that_enclose_bodies_go_before_a_motion_track_that_does_not_fit,
                     a_doubtful_look_makes_no_person_of_what_moves,
+                    one_look_at_the_threshold_makes_no_person_of_what_moves_and_some_do,
+                    a_person_whom_looks_show_no_more_becomes_what_only_moves,
+                    the_confidence_of_a_person_is_what_looks_say,
+                    looks_that_cannot_see_a_person_say_nothing,
+                    who_goes_away_from_the_camera_stays_a_person,
                     who_is_shown_once_a_second_is_published_all_the_time,
                     a_look_counts_however_late_it_is,
                     a_look_at_the_very_frame_shows_where_the_body_is_now,

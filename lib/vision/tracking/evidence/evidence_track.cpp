@@ -116,4 +116,13 @@ void EvidenceTrack::add(double more, const EvidenceParameters& p) {
   evidence = std::min(p.ceiling, evidence + more);
 }
 
+void EvidenceTrack::add_look(double more, const EvidenceParameters& p) {
+  add(more, p);
+  person_evidence = std::clamp(person_evidence + more, 0.0, p.ceiling);
+}
+
+void EvidenceTrack::miss_look(const EvidenceParameters& p) {
+  person_evidence = std::max(person_evidence - p.missed, 0.0);
+}
+
 }  // namespace cerberus::vision

@@ -17,13 +17,14 @@ namespace cerberus::vision {
 
 struct EvidenceTrack {
   static constexpr std::size_t kKept = 25;  // places of the last second
+  static constexpr double kNever = 1e9;
 
   std::uint32_t id = 0;         // 0: it has not been published yet
   std::uint32_t motion_id = 0;  // of the motion track that it was last matched with; 0: none
   // It is where that motion track is, and ends with it.
   bool mirrors = false;
   bool holds_several = false;  // it mirrors a group, or a look has found several bodies in it
-  bool person = false;         // a look has shown it
+  bool person = false;         // looks have shown it, and go on doing so
   bool published = false;      // its evidence has sufficed
   bool travelled = false;      // its place has moved
   bool moved = false;          // the same, or its inside has moved
@@ -31,6 +32,8 @@ struct EvidenceTrack {
   bool hit = false;            // observed in this frame
   RegionKind kind = RegionKind::person_like;
   double evidence = 0;
+  double person_evidence = 0;  // what looks alone have added, 0 at least
+  double least_seen = kNever;  // its smallest height, pixels, at which a sure look has shown it
   double quality = 0;  // mean of what the last looks gave: of two tracks of one body the better one stays
   double age = 0, unseen = 0, since_motion = 1e9, since_look = 1e9;  // s; since a look has shown it
   double fast = 0;                                 // s for which its motion track has been fast
@@ -46,6 +49,8 @@ struct EvidenceTrack {
   // where there is none. motion: of the camera, reduced pixels.
   void follow(const Pyramid* before, const Pyramid& now, const Transform& motion, double seconds,
               const EvidenceParameters& p);
+  // Whether a sure look has shown it.
+  bool shown() const { return least_seen < kNever; }
   // A look begins at the present frame.
   void begin_look() { looked_ = box(); }
   // Where it was then. No area: it has begun since.
@@ -62,6 +67,9 @@ struct EvidenceTrack {
   // s for which it has not gone, grown or shrunk by EvidenceParameters::travel.
   double rested() const { return age - rest_.age; }
   void add(double more, const EvidenceParameters& p);
+  // A look adds to both sums, or takes from that of a person.
+  void add_look(double more, const EvidenceParameters& p);
+  void miss_look(const EvidenceParameters& p);
 
  private:
   struct Place {

@@ -147,9 +147,10 @@ void EvidenceTracker::match_look(bool sure) {
       t.distrust();
     }
     if (!t.mirrors) t.correct(body.box, p_);
-    t.add(std::max(body.score - (t.moved ? p_.neutral : p_.unmoved), p_.least), p_);
+    t.add_look(std::max(body.score - (t.moved ? p_.neutral : p_.unmoved), p_.least), p_);
     t.quality += p_.quality_gain * (body.score - t.quality);
-    t.person = t.person || sure;
+    t.person = t.person || (sure && t.person_evidence >= p_.sure);
+    if (sure) t.least_seen = std::min(t.least_seen, t.looked().height);
     t.hit = true;
     t.unseen = 0;
     if (sure) t.since_look = 0;
@@ -175,7 +176,8 @@ void EvidenceTracker::begin_at(const PersonDetection& body) {
   if (std::ranges::any_of(tracks_, covers)) return;
   EvidenceTrack t = EvidenceTrack::begin(box);
   t.person = t.hit = true;
-  t.evidence = std::clamp(body.score - p_.unmoved, 0.0, p_.ceiling);
+  t.evidence = t.person_evidence = std::clamp(body.score - p_.unmoved, 0.0, p_.ceiling);
+  t.least_seen = t.height;
   t.quality = p_.quality_gain * body.score;
   tracks_.push_back(t);
 }
@@ -241,7 +243,8 @@ void EvidenceTracker::begin_mirror(const Track& motion) {
   t.motion_id = motion.id;
   const Known& known = know(motion.id);
   if (known.id == 0 || std::ranges::find(tracks_, known.id, &EvidenceTrack::id) == tracks_.end())
-    t.id = known.id, t.person = known.person, t.published = known.published;
+    t.id = known.id, t.person = known.person, t.published = known.published,
+    t.person_evidence = known.person_evidence, t.least_seen = known.least_seen;
   mirror(t, motion);
   tracks_.push_back(t);
 }
@@ -256,7 +259,8 @@ void EvidenceTracker::take_motion(std::span<const Track> motion) {
       // point of MOTA: who has left is shown for too long.
       t.mirrors = false;
       const bool stands = t.since_look < t.since_motion && t.since_look <= shown_time();
-      return !(t.person && stands) || t.holds_several;
+      t.person = t.person || stands;
+      return !stands || t.holds_several;
     }
     mirror(t, *found);
     if (found->state == TrackState::seen) t.evidence = p_.ceiling;
@@ -268,6 +272,14 @@ void EvidenceTracker::take_motion(std::span<const Track> motion) {
     if (!used_[j]) begin_mirror(motion[j]);
 }
 
+// Whether a look must have shown the track if it is a person: looks have shown it smaller, and the frame does not cut it.
+bool EvidenceTracker::should_be_seen(const EvidenceTrack& t) const {
+  const Box& box = t.looked();
+  const Size picture = frame_.picture.size();
+  return box.height >= t.least_seen && !t.holds_several && box.x >= 1 && box.y >= 1 &&
+         box.right() <= picture.width - 1 && box.bottom() <= picture.height - 1;
+}
+
 // What the look says of tracks that it does not show, and what their own motion says.
 void EvidenceTracker::judge_look(const EvidenceLook& look) {
   const bool calm = frame_.calm >= p_.calm;
@@ -276,11 +288,13 @@ void EvidenceTracker::judge_look(const EvidenceLook& look) {
     const bool moving = inside_moves(t.box(), calm);
     t.moved = t.moved || moving;
     if (!t.hit) {
-      const bool shown = t.since_motion <= look.seconds;
-      if (!shown && t.looked().area() > 0) t.evidence -= p_.missed;
-      t.quality += p_.quality_gain * ((shown ? p_.motion_quality : p_.missed_quality) - t.quality);
+      const bool moves = t.since_motion <= look.seconds;
+      if (!moves && t.looked().area() > 0) t.evidence -= p_.missed;
+      if (should_be_seen(t)) t.miss_look(p_);
+      t.quality += p_.quality_gain * ((moves ? p_.motion_quality : p_.missed_quality) - t.quality);
     }
     if (t.mirrors) {
+      t.person = t.person && t.person_evidence > 0;
       t.evidence = std::max(t.evidence, 0.0);
       continue;
     }
@@ -298,7 +312,8 @@ void EvidenceTracker::end_tracks() {
     t.moved = t.moved || t.travelled;
     const bool alone = t.mirrors && t.travelled && (camera_stood_ >= p_.still_time || t.fast >= p_.fast_time);
     // Windows are mistaken at one place of a still picture again and again; a person there moves at some time.
-    const bool person = t.person && (t.mirrors || t.moved || looks_enclose_ || camera_stood_ < p_.still_time);
+    const bool person =
+        t.shown() && (t.mirrors || t.moved || looks_enclose_ || camera_stood_ < p_.still_time);
     if (t.evidence >= p_.publish && (person || alone)) t.published = true;
   }
   std::erase_if(tracks_, [&](const EvidenceTrack& t) {
@@ -329,6 +344,7 @@ void EvidenceTracker::remember_motion() {
     if (t.motion_id == 0 || t.since_motion > 0) continue;
     Known& known = know(t.motion_id);
     known.id = t.id, known.person = t.person, known.published = t.published;
+    known.person_evidence = t.person_evidence, known.least_seen = t.least_seen;
   }
 }
 
@@ -340,7 +356,7 @@ void EvidenceTracker::publish(std::span<const Track> motion) {
     if (!t.published || (!t.mirrors && t.unseen > shown_time())) continue;
     if (frame_.persons_only && !t.person) continue;
     const auto stands_for = [&](const EvidenceTrack& other) {
-      return other.published && other.person && !other.holds_several &&
+      return other.published && other.shown() && !other.holds_several &&
              share_within(other.box(), t.box()) >= p_.body.nested;
     };
     if (t.holds_several && std::ranges::any_of(tracks_, stands_for)) continue;
@@ -352,7 +368,7 @@ void EvidenceTracker::publish(std::span<const Track> motion) {
     r.box = box;
     r.velocity = {t.velocity.x * t.height * across, t.velocity.y * t.height * down};
     r.age = t.age;
-    r.confidence = std::clamp(t.evidence / p_.ceiling, 0.0, 1.0);
+    r.confidence = t.person_evidence / p_.ceiling;
     r.person = t.person, r.moves = t.since_motion < 1, r.kind = t.kind;
     r.state = !r.moves && t.rested() >= p_.stopped   ? TrackState::stopped
               : t.hit || t.unseen == 0 || t.followed ? TrackState::seen

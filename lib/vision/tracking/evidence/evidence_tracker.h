@@ -46,8 +46,8 @@ struct EvidenceResult {
   Box box;                // frame pixels, inside the frame
   Point velocity;         // frame pixels a second relative to the scene
   double age = 0;         // s
-  double confidence = 0;  // 0..1
-  bool person = false;    // a look has shown it
+  double confidence = 0;  // that it is a person: the evidence of looks, 0..1
+  bool person = false;    // looks have shown it, and go on doing so
   bool moves = false;     // motion has shown it within the last second
   int motion = -1;        // index of the motion track whose place it has
   RegionKind kind = RegionKind::person_like;
@@ -76,10 +76,12 @@ class EvidenceTracker {
   struct Known {                          // of a motion track
     std::uint32_t motion_id = 0, id = 0;  // id 0: not published yet
     bool person = false, published = false;
+    double person_evidence = 0, least_seen = EvidenceTrack::kNever;
   };
   Known& know(std::uint32_t motion_id);
   double shown_time() const;
   Box reduced(const Box& box) const;
+  bool should_be_seen(const EvidenceTrack& track) const;
   bool inside_moves(const Box& box, bool calm) const;
   void take_look(const EvidenceLook& look);
   template <typename RowBox, typename ColumnBox, typename Use>
