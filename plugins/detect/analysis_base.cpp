@@ -256,7 +256,10 @@ GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
 }
 
 void accept(AnalysisPrivate& priv, const GstVideoInfo& info) {
-  if (!priv.have_info || !gst_video_info_is_equal(&priv.info, &info)) priv.history.drop();
+  if (!priv.have_info || !gst_video_info_is_equal(&priv.info, &info)) {
+    priv.history.drop();
+    priv.analyser->new_caps();
+  }
   priv.info = info;
   priv.have_info = true;
   priv.warned = false;
@@ -312,7 +315,7 @@ gboolean query(GstBaseTransform* trans, GstPadDirection direction, GstQuery* que
   if (direction == GST_PAD_SINK) {
     const auto ends = [&] { return is_record_query(query) && priv_of(trans).analyser->answer(query); };
     if (guarded(trans, false, ends)) return FALSE;  // not for the other branches of a tee
-    if (is_looks_query(query) && priv_of(trans).analyser->takes_looks()) {
+    if (is_looks_query(query) && priv_of(trans).analyser->take_looks()) {
       accept_looks_query(query);
       return TRUE;
     }

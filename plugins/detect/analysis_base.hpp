@@ -68,8 +68,10 @@ class Analyser {
   virtual void upstream_event(GstEvent*) {}
   // Answers the query of record.hpp, from any thread: adds this element's flags; true: it is not passed downstream.
   virtual bool answer(GstQuery*) { return false; }
-  // Returns true for an element that takes the looks of a person detector upstream.
-  virtual bool takes_looks() const { return false; }
+  // Returns true for an element that takes the looks of a person detector upstream, which asks, and will send them. Any thread.
+  virtual bool take_looks() { return false; }
+  // The frames are of other caps from now on.
+  virtual void new_caps() {}
   // Returns true for the one element that measures the camera itself.
   virtual bool measures_camera() const { return false; }
 };

@@ -34,6 +34,8 @@ constexpr char kBurntIn[] = "cerberus-burnt-in";
 
 // Frames in a row without an orientation before a warning: a head reports its first pose within a second.
 constexpr int kUnplaced = 50;
+// Seconds without looks or boxes after which nothing looks any more. Chosen: several times as long as any detector pauses.
+constexpr double kLongestWait = 30;
 constexpr char kNoPlaces[] =
     "Polygons of the world in the property zones hide nothing: they need horizontal-fov and the head's pose, "
     "as pantiltsink and virtualptz report it, on each frame.";
@@ -335,13 +337,73 @@ void Detection::read_looks(Frame& frame, double step) {
   frame.persons = judged_downstream;
   state.judges = false;
   if (judged_downstream || !has(Stage::tracks)) return;
-  if (const PersonLooks* looks = person_looks_of(frame.buffer)) {
+  const PersonLooks* looks = person_looks_of(frame.buffer);
+  complain_of_lost_looks(looks_promised_ && !looks);
+  state.since_looks += step;
+  if (looks) {
     state.looks = *looks;
     state.has_looks = true;
+    state.since_looks = 0;
   } else {
     read_boxes(frame, step);
   }
+  if (state.since_looks > kLongestWait) forget_looks();
   state.judges = frame.persons = state.has_looks;
+}
+
+// What has been seen is of another stream, or too long ago: what moves is published as if nothing had ever looked.
+void Detection::forget_looks() {
+  State& state = *state_;
+  state.has_looks = false;
+  state.look_times.reset();
+  state.since_looks = 0;
+}
+
+void Detection::flush(bool begins) {
+  watch_.flush(begins);
+  if (!begins && state_) forget_looks();
+}
+
+void Detection::new_caps() {
+  looks_promised_ = false;
+  if (state_) forget_looks();
+}
+
+bool Detection::take_looks() {
+  if (!has(Stage::tracks)) return false;
+  looks_promised_ = true;
+  return true;
+}
+
+// Once a stream.
+void Detection::complain_of_lost_looks(bool lost) {
+  State& state = *state_;
+  if (state.frames_unlooked > kUnplaced) return;
+  state.frames_unlooked = lost ? state.frames_unlooked + 1 : 0;
+  if (state.frames_unlooked <= kUnplaced) return;
+  CERBERUS_ELEMENT_WARNING(base, STREAM, FAILED,
+                           ("What personverify in front sees does not arrive here: an element in between "
+                            "crops the picture or makes frames of its own. "
+                            "Only what moves is found, and require=person does not count. Crop in front of "
+                            "personverify, or put personverify "
+                            "behind this element."),
+                           (nullptr));
+}
+
+// Once a stream: a detector of many classes has found a person by then, or another kind of objects is there.
+void Detection::complain_of_labels(bool person) {
+  constexpr int kMany = 10;  // frames with boxes
+  State& state = *state_;
+  if (person) state.strange_boxes = kMany;
+  if (state.strange_boxes == kMany || ++state.strange_boxes < kMany) return;
+  std::string persons;
+  for (const char* label : kPersonLabels) persons += (persons.empty() ? "" : ", ") + std::string(label);
+  CERBERUS_ELEMENT_INFO(base, STREAM, FAILED,
+                        ("Another element finds objects labelled \"%s\", which are no persons here and do "
+                         "not count. If they are persons, name "
+                         "them so in that element's list of labels: %s.",
+                         state.boxes.front().label, persons.c_str()),
+                        (nullptr));
 }
 
 // Boxes of persons that other elements have found are the result of a look at this frame.
@@ -359,6 +421,10 @@ void Detection::read_boxes(const Frame& frame, double step) {
            vision::evidence_score(found.confidence, vision::kNetworkUse.threshold, vision::kNetworkUse)});
   state.looks.of_this_frame = state.look_times.is_look(step, !state.looks.bodies.empty());
   state.has_looks = state.has_looks || state.looks.of_this_frame;
+  if (!state.boxes.empty()) {
+    state.since_looks = 0;
+    complain_of_labels(!state.looks.bodies.empty());
+  }
   vision::hits_to_bodies(state.looks.bodies, {});
 }
 

@@ -5,6 +5,7 @@
 
 #include <cerberus/cerberus.h>
 
+#include <atomic>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -37,12 +38,13 @@ class Detection : public Analyser {
   Outcome analyse(Frame& frame) override;
   void repeat(Frame& frame) override;
   void play(bool plays) override { watch_.play(plays); }
-  void flush(bool begins) override { watch_.flush(begins); }
+  void flush(bool begins) override;
+  void new_caps() override;
   void end_of_stream() override;
   void upstream_event(GstEvent* event) override;
   bool measures_camera() const override { return has(vision::Stage::camera); }
   bool answer(GstQuery* query) override;
-  bool takes_looks() const override { return has(vision::Stage::tracks); }
+  bool take_looks() override;
 
  protected:
   virtual DetectSettings snapshot() const = 0;
@@ -62,12 +64,15 @@ class Detection : public Analyser {
     PersonLooks looks;                              // of a person detector upstream: of the last frame
     std::vector<ForeignBox> boxes;                  // that other elements have found, of the last frame
     vision::LookTimes look_times;                   // of those of persons
-    bool has_looks = false;                         // there has been one
-    bool judges = false, judged = false;            // by it, tracks of what moves; those of the last frame
-    vision::LumaStretch stretch;                    // of pictures that no stage has reduced
-    CerberusCameraMotion motion{};                  // of the last picture
-    std::optional<double> calm;                     // likewise, where this element knows it
-    std::optional<ThresholdFacts> facts;            // likewise
+    bool has_looks = false;                         // there has been one, and not too long ago
+    double since_looks = 0;                         // s without looks and boxes
+    int strange_boxes = 0;                // frames with boxes of other elements, of which none is a person's
+    int frames_unlooked = 0;              // in a row, while looks should come
+    bool judges = false, judged = false;  // by it, tracks of what moves; those of the last frame
+    vision::LumaStretch stretch;          // of pictures that no stage has reduced
+    CerberusCameraMotion motion{};        // of the last picture
+    std::optional<double> calm;           // likewise, where this element knows it
+    std::optional<ThresholdFacts> facts;  // likewise
     std::optional<std::vector<vision::Box>> sent_burnt_in;  // upstream; none: nothing yet
     double repeated = 0;                                    // seconds for which it has been repeated
     GstClockTime shown = GST_CLOCK_TIME_NONE;               // running time of the last frame, repeated or not
@@ -91,6 +96,9 @@ class Detection : public Analyser {
   void publish_tracks(const Frame& frame, const vision::Analysis& record);
   void read_looks(Frame& frame, double step);
   void read_boxes(const Frame& frame, double step);
+  void complain_of_labels(bool person);
+  void complain_of_lost_looks(bool lost);
+  void forget_looks();
   double step_of(const Frame& frame) const;
   void publish(const Frame& frame, const vision::LumaSource& luma, double step);
   void attach_published(GstBuffer* buffer);
@@ -110,6 +118,7 @@ class Detection : public Analyser {
   HeadMotionMonitor carrier_;      // receives poses in any thread, so not part of the state
   Answer<guint> answer_;
   MotionWatch watch_;
+  std::atomic<bool> looks_promised_ = false;  // by a person detector upstream, for frames of these caps
 };
 
 template <vision::Stage kFirst, vision::Stage kLast = kFirst, typename Settings = Adjustable<DetectSettings>>

@@ -18,6 +18,11 @@
 namespace cerberus::plugin {
 namespace {
 
+bool is_person_label(const char* label) {
+  return label && std::ranges::any_of(kPersonLabels,
+                                      [&](const char* each) { return g_ascii_strcasecmp(label, each) == 0; });
+}
+
 // The part of a box inside the frame. nullopt: there is none.
 std::optional<vision::Box> inside(double x, double y, double width, double height, vision::Size frame) {
   const double left = std::max(x, 0.0), top = std::max(y, 0.0);
@@ -31,7 +36,8 @@ void add(double x, double y, double width, double height, vision::Size frame, co
          double confidence, std::vector<ForeignBox>& boxes) {
   if (boxes.size() == kMostForeignBoxes) return;
   const auto box = inside(x, y, width, height, frame);
-  if (box && confidence >= 0) boxes.push_back({*box, std::min(confidence, 1.0), is_person_label(label)});
+  if (box && confidence >= 0)
+    boxes.push_back({*box, std::min(confidence, 1.0), is_person_label(label), label ? label : ""});
 }
 
 // As DL Streamer gives it, and this library: a param `detection` with the number `confidence`. 1 where there is none; NaN where
@@ -99,13 +105,6 @@ void read_detections(GstBuffer*, vision::Size, std::vector<ForeignBox>&) {}
 #endif
 
 }  // namespace
-
-bool is_person_label(const char* label) {
-  constexpr const char* kPersons[] = {"person", "pedestrian", "human", "people",
-                                      "body",   "man",        "woman", "child"};
-  return label && std::ranges::any_of(kPersons,
-                                      [&](const char* each) { return g_ascii_strcasecmp(label, each) == 0; });
-}
 
 void read_foreign_boxes(GstBuffer* buffer, vision::Size frame, std::vector<ForeignBox>& boxes) {
   boxes.clear();

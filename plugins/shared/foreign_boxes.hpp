@@ -17,9 +17,10 @@ namespace cerberus::plugin {
 constexpr std::size_t kMostForeignBoxes = 256;
 
 struct ForeignBox {
-  vision::Box box;        // pixels, inside the frame
-  double confidence = 1;  // 0 to 1; 1 where the element gives none
-  bool person = false;    // so its label says
+  vision::Box box;         // pixels, inside the frame
+  double confidence = 1;   // 0 to 1; 1 where the element gives none
+  bool person = false;     // so its label says
+  const char* label = "";  // lives as long as the process
 };
 
 // Replaces `boxes`. Boxes outside the frame and those of less than a pixel are left out, those of a negative confidence or one
@@ -27,8 +28,8 @@ struct ForeignBox {
 // the first kMostForeignBoxes. An object that is there in both forms comes twice.
 void read_foreign_boxes(GstBuffer* buffer, vision::Size frame, std::vector<ForeignBox>& boxes);
 
-// Whether an object of this label is a person: "person", "pedestrian", "human", "people", "body", "man", "woman", "child",
-// in any case.
-bool is_person_label(const char* label);
+// Labels of persons; upper and lower case count alike.
+inline constexpr const char* kPersonLabels[] = {"person", "pedestrian", "human", "people",
+                                                "body",   "man",        "woman", "child"};
 
 }  // namespace cerberus::plugin

@@ -30,7 +30,7 @@
  * element what it would doubt by itself: see `motiontrack`. In front of `motiondetect` or `motiontrack` it only looks: what it
  * has seen goes along with the frames, and the tracker downstream follows by both witnesses and publishes, also in its
  * messages. Where the tracker is in one branch of a `tee`, the others get no regions. What it has seen goes through whatever
- * copies, converts or scales the picture, and is lost where it is cropped.
+ * copies, converts or scales the picture, and is lost where it is cropped: the tracker warns of that.
  *
  * People are found by OpenCV's default people detector (histograms of oriented gradients, trained on INRIA's data) or with
  * `detector=daimler` by its Daimler detector, both in a picture of 480 lines: upright ones who are at least a fifth, or a

@@ -337,6 +337,68 @@ GST_START_TEST(a_person_who_is_cut_by_the_edge_is_a_person) {
 }
 GST_END_TEST
 
+GST_START_TEST(one_message_names_a_label_that_is_none_of_a_person) {
+  const struct {
+    std::vector<const char*> labels;  // on each frame
+    int frames;
+    bool told;
+  } cases[] = {{{"hat"}, 40, true}, {{"hat"}, 5, false}, {{"hat", "person"}, 40, false}, {{}, 40, false}};
+  const scene::World world = walk();
+  for (const Form attach : kForms)
+    for (const auto& each : cases) {
+      scene::Line line("motiondetect");
+      for (int n = 0; n < each.frames; ++n) {
+        GstBuffer* in = frame_of(world, n);
+        for (const char* label : each.labels) attach(in, label, 200, 20, 60, 40, .9);
+        gst_buffer_unref(line.through(in));
+      }
+      const auto told = line.messages(GST_MESSAGE_INFO);
+      fail_unless_equals_int(told.size(), each.told);
+      if (each.told)
+        fail_unless(
+            told[0].find("\"hat\"") != std::string::npos && told[0].find("person") != std::string::npos, "%s",
+            told[0].c_str());
+    }
+}
+GST_END_TEST
+
+// What sways in one place is published by motion alone, and is nobody where a detector looks on. One box was there, once.
+GST_START_TEST(a_stray_box_counts_until_other_caps_a_flush_or_half_a_minute_without_one) {
+  scene::World world;
+  world.path = [](int n) { return 150 + 6 * std::sin(.5 * n); };
+  for (const std::string end : {"nothing", "caps", "flush", "time"}) {
+    scene::Line line("motiondetect");
+    int n = 0;
+    guint found = 0;
+    GstClockTime time = 0;
+    const auto run = [&](int frames, GstClockTime step, bool figure) {
+      for (const int last = n + frames; n < last; ++n, time += step) {
+        scene::World now = world;
+        now.figure = figure;
+        GstBuffer* in = scene::grey_buffer(now, n);
+        GST_BUFFER_PTS(in) = time;
+        if (n == 2) add_region_of_interest(in, "person", 20, 20, 40, 80, .9);
+        GstBuffer* out = line.through(in);
+        found = Regions(out).size();
+        gst_buffer_unref(out);
+      }
+    };
+    run(50, scene::kStep, true);
+    fail_unless_equals_int(found, 0);
+    if (end == "caps") line.push_caps(scene::caps("GRAY8", scene::kWidth, scene::kHeight, ",framerate=24/1"));
+    if (end == "flush") {
+      gst_harness_push_event(line.harness, gst_event_new_flush_start());
+      gst_harness_push_event(line.harness, gst_event_new_flush_stop(TRUE));
+      push_segment(line.harness);
+      time = 0;
+    }
+    if (end == "time") run(160, GST_SECOND / 5, false);
+    run(50, scene::kStep, true);
+    fail_unless_equals_int(found, end == "nothing" ? 0 : 1);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(messages_tell_of_the_persons_too) {
   const scene::World world = walk();
   scene::Line line("motiondetect");
@@ -374,6 +436,8 @@ Suite* foreign_boxes_suite() {
   tcase_add_test(tests, other_labels_bad_boxes_and_our_own_regions_are_no_witness);
   tcase_add_test(tests, of_thousands_of_boxes_on_a_frame_the_first_are_read);
   tcase_add_test(tests, a_person_who_is_cut_by_the_edge_is_a_person);
+  tcase_add_test(tests, one_message_names_a_label_that_is_none_of_a_person);
+  tcase_add_test(tests, a_stray_box_counts_until_other_caps_a_flush_or_half_a_minute_without_one);
   tcase_add_test(tests, messages_tell_of_the_persons_too);
   return suite;
 }

@@ -127,6 +127,26 @@ GST_START_TEST(what_it_has_seen_follows_a_picture_that_is_converted_and_scaled) 
 }
 GST_END_TEST
 
+GST_START_TEST(one_warning_says_that_what_it_has_seen_is_lost_by_cropping) {
+  const struct {
+    const char* launch;
+    bool lost;
+  } cases[] = {{"personverify require=person ! videocrop left=20 ! motiondetect ! identity", true},
+               {"videocrop left=20 ! personverify require=person ! motiondetect ! identity", false},
+               {"personverify require=person ! videoscale ! video/x-raw,width=160,height=120 ! motiondetect "
+                "! identity",
+                false},
+               {"motiondetect ! videocrop left=20 ! personverify ! identity", false}};
+  for (const auto& each : cases) {
+    Line line(each.launch);
+    for (int n = 0; n < 120; ++n) gst_buffer_unref(line.through(kTurning.frame(n)));
+    const auto told = line.messages(GST_MESSAGE_WARNING);
+    fail_unless_equals_int(told.size(), each.lost);
+    if (each.lost) fail_unless(told[0].find("crop") != std::string::npos, "%s", told[0].c_str());
+  }
+}
+GST_END_TEST
+
 // Of three frames two are dropped between the two, among them such at which a look has begun or ended.
 GST_START_TEST(dropped_frames_between_the_two_show_nobody_where_nobody_is) {
   Line line("personverify rate=5 ! identity name=between ! motiondetect ! identity");
@@ -217,6 +237,7 @@ Suite* person_looks_suite() {
   tcase_add_test(tests, identities_count_from_1_in_both_orders);
   tcase_add_test(tests, in_front_of_the_stages_it_is_as_in_front_of_motiondetect);
   tcase_add_test(tests, what_it_has_seen_follows_a_picture_that_is_converted_and_scaled);
+  tcase_add_test(tests, one_warning_says_that_what_it_has_seen_is_lost_by_cropping);
   tcase_add_test(tests, dropped_frames_between_the_two_show_nobody_where_nobody_is);
   tcase_add_test(tests, repeated_frames_change_no_identity);
   tcase_add_test(tests, a_tracker_that_is_linked_later_takes_over);

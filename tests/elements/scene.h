@@ -223,10 +223,11 @@ class Line {
   std::vector<std::string> messages(GstMessageType type) {
     std::vector<std::string> texts;
     while (GstMessage* message = gst_bus_pop_filtered(bus, type)) {
-      if (type == GST_MESSAGE_ERROR || type == GST_MESSAGE_WARNING) {
+      if (type == GST_MESSAGE_ERROR || type == GST_MESSAGE_WARNING || type == GST_MESSAGE_INFO) {
         GError* error = nullptr;
-        type == GST_MESSAGE_ERROR ? gst_message_parse_error(message, &error, nullptr)
-                                  : gst_message_parse_warning(message, &error, nullptr);
+        (type == GST_MESSAGE_ERROR     ? gst_message_parse_error
+         : type == GST_MESSAGE_WARNING ? gst_message_parse_warning
+                                       : gst_message_parse_info)(message, &error, nullptr);
         texts.emplace_back(error->message);
         g_error_free(error);
       } else {
