@@ -322,7 +322,7 @@ void EvidenceTracker::end_tracks() {
   });
   std::ranges::sort(tracks_, [&](const EvidenceTrack& a, const EvidenceTrack& b) {
     if (a.published != b.published) return a.published;
-    return a.quality != b.quality ? a.quality > b.quality : a.id < b.id;
+    return a.quality != b.quality ? a.quality > b.quality : a.age > b.age;
   });
   std::size_t kept = 0;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
