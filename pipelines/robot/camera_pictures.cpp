@@ -90,8 +90,9 @@ void Camera::connect() {
   drop_frames("stage-queue", draw_stage_);
   drop_frames("record-queue", record_);
   drop_frames("analysis-queue", record_);
-  g_autoptr(GstElement) detect = element("detect");
-  g_autoptr(GstPad) pad = gst_element_get_static_pad(detect, "src");
+  // Where all that analyses is behind the frame, a person detector included.
+  g_autoptr(GstElement) fusion = element("fusion");
+  g_autoptr(GstPad) pad = gst_element_get_static_pad(fusion, "sink");
   gst_pad_add_probe(
       pad, GST_PAD_PROBE_TYPE_BUFFER,
       [](GstPad* pad, GstPadProbeInfo* info, gpointer data) {
