@@ -12,8 +12,7 @@ namespace {
 // Settings of the detection that a people detector would pass over, or that ask for other things than people; empty: none.
 std::string contradiction(const Properties& detection) {
   for (const Property& one : detection)
-    if ((one.name == "zones" && !one.value.empty()) || (one.name == "preset" && one.value != "default") ||
-        (one.name == "people" && one.value == "false"))
+    if ((one.name == "preset" && one.value != "default") || (one.name == "people" && one.value == "false"))
       return one.name;
   return {};
 }

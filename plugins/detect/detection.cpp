@@ -62,7 +62,7 @@ bool Detection::start() {
   refresh();
   // Zones that cannot be read stop the start; a typo while playing keeps the zones that were there.
   state.zones = snapshot().zones;
-  const std::string wrong = state.detector.zones().parse(state.zones);
+  const std::string wrong = read_zones(state.zones);
   if (!wrong.empty())
     CERBERUS_ELEMENT_ERROR(base, RESOURCE, SETTINGS, (wrong), ("the property zones cannot be used"));
   return wrong.empty();
@@ -111,6 +111,16 @@ bool Detection::answer(GstQuery* query) {
   return wanted & kNothingFurther;
 }
 
+// Returns what is wrong with them; then those that were there stay.
+std::string Detection::read_zones(const std::string& text) {
+  std::string wrong = state_->detector.zones().parse(text);
+  if (!wrong.empty()) return wrong;
+  const auto zones = std::make_shared<vision::Zones>();
+  zones->parse(text);
+  state_->zones_read = zones->everywhere() ? nullptr : zones;
+  return wrong;
+}
+
 void Detection::apply(const DetectSettings& settings) {
   State& state = *state_;
   state.settings = settings;
@@ -120,7 +130,7 @@ void Detection::apply(const DetectSettings& settings) {
   if (answer_.outdated_by(wants(settings))) cerberus_analysis_answer_anew(base);
   if (settings.zones != state.zones) {
     state.zones = settings.zones;
-    if (const std::string wrong = state.detector.zones().parse(state.zones); !wrong.empty())
+    if (const std::string wrong = read_zones(state.zones); !wrong.empty())
       CERBERUS_ELEMENT_WARNING(base, RESOURCE, SETTINGS, (wrong), ("the zones that were there stay"));
   }
   if (has(Stage::camera)) carrier_.begin_comparison();
@@ -326,6 +336,7 @@ void Detection::publish_regions(GstBuffer* buffer, const vision::Analysis& recor
     state_->moving.back().id = number;
   }
   state_->published = state_->moving;
+  set_frame_zones(buffer, {state_->zones_read, state_->options.field_of_view});
   attach_published(buffer);
 }
 
@@ -448,10 +459,13 @@ void Detection::publish_tracks(const Frame& frame, const vision::Analysis& recor
 // luma: the picture, without data: that of the frame before. step: seconds since the frame before.
 void Detection::publish(const Frame& frame, const vision::LumaSource& luma, double step) {
   State& state = *state_;
+  if (has(Stage::regions)) set_frame_zones(frame.buffer, {state.zones_read, state.options.field_of_view});
   if (state.judges) {
-    EvidenceInput seen{
-        .size = frame.size, .luma = luma, .seconds = step, .fresh = frame.fresh, .motion = frame.motion};
+    EvidenceInput seen;
+    seen.size = frame.size, seen.luma = luma, seen.seconds = step;
+    seen.fresh = frame.fresh, seen.motion = frame.motion;
     if (const auto* camera = cerberus_buffer_peek_camera_motion(frame.buffer)) seen.calm = camera->calm;
+    seen.zones = {frame.buffer, frame.running_time, frame.size};
     // The detector looks for the first time, amid a scene: what has been published goes on, with its identities.
     if (!state.judged && !frame.fresh) {
       state.evidence.end_looks();

@@ -6,6 +6,7 @@
 #include <cerberus/cerberus.h>
 
 #include <atomic>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -77,7 +78,8 @@ class Detection : public Analyser {
     double repeated = 0;                                    // seconds for which it has been repeated
     GstClockTime shown = GST_CLOCK_TIME_NONE;               // running time of the last frame, repeated or not
     Stamps stamps;
-    std::string zones;  // as last read
+    std::string zones;                                // as last read
+    std::shared_ptr<const vision::Zones> zones_read;  // the same; nullptr: everywhere
     NothingFound no_regions, no_tracks, no_places;
     double withheld = 0;       // seconds for which tracks were left out
     int unplaced = 0;          // frames in a row in which zones of the world have no place
@@ -88,6 +90,7 @@ class Detection : public Analyser {
   guint wants(const DetectSettings& settings) const;
   bool has(vision::Stage stage) const { return first_ <= stage && stage <= last_; }
   void apply(const DetectSettings& settings);
+  std::string read_zones(const std::string& text);
   vision::Record obtain(const Frame& frame, bool regions_known);
   void measure_camera(vision::Analysis& record, Frame& frame);
   void publish_burnt_in(const vision::Analysis& record);

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "shared/frame_zones.hpp"
 #include "shared/person_looks.hpp"
 #include "vision/detector.h"
 #include "vision/tracking/evidence/evidence_tracker.h"
@@ -24,6 +25,7 @@ struct EvidenceInput {
   bool fresh = false;         // it begins a scene
   vision::CameraStep motion;  // since the previous frame
   double calm = 1;            // vision::SceneCalm::share()
+  ZonesOfFrame zones;         // where tracks count that motion does not show
 };
 
 class EvidenceRegions {

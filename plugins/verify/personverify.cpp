@@ -21,6 +21,8 @@
  * - a motion track is a person once looks have shown it surely enough (one that is beyond doubt, or some at the threshold), and
  *   only moves again once looks that should see it, as they have seen it smaller, have missed it often enough. The confidence
  *   of a person is this evidence of looks, 0 to 1;
+ * - a person whom no motion track shows counts where `zones` of `motiondetect` or `motionregions` let the middle of the box
+ *   count, unless the picture is cropped between that element and the one that follows;
  * - a motion track that holds several people is replaced by one region for each of them;
  * - identities count from 1 in the order in which tracks are published, and none is given twice: they are not those of the
  *   motion tracks, which `motiondetect` in front has in its messages;
@@ -488,6 +490,7 @@ GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, G
     seen.motion = camera.motion;  // still where nothing upstream measures it
     if (const CerberusCameraMotion* measured = cerberus_buffer_peek_camera_motion(buffer))
       seen.calm = measured->calm;
+    seen.zones = {buffer, stamp, size};
     read_regions(state, buffer);
     auto& found =
         state.evidence.update(seen, state.before, state.looks, state.looks.persons_only || state.foreign);

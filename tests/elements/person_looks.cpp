@@ -147,6 +147,49 @@ GST_START_TEST(one_warning_says_that_what_it_has_seen_is_lost_by_cropping) {
 }
 GST_END_TEST
 
+// A person whom looks alone show comes out of what is left out, as somebody does whom motion shows.
+GST_START_TEST(zones_hold_for_persons_whom_only_the_detector_shows) {
+  constexpr double kEdge = .45;  // of the width
+  const std::string left_out = "zones=\"exclude 0,0 0.45,0 0.45,1 0,1\"",
+                    stages =
+                        "cameramotion ! threeframediff ! fuzzythreshold ! motionregions " + left_out + " ! ";
+  for (const std::string& launch :
+       {"personverify ! motiondetect " + left_out + " ! identity",
+        "motiondetect " + left_out + " ! personverify ! identity", "personverify ! " + stages + "motiontrack",
+        stages + "motiontrack ! personverify",
+        "motiondetect " + left_out +
+            " ! videoconvert ! video/x-raw,format=RGB ! videoscale ! "
+            "video/x-raw,width=320,height=240 ! personverify ! identity"}) {
+    Line line(launch);
+    for (int n = 0; n < 65; ++n) {
+      GstBuffer* out = line.through(kTurning.frame(n));
+      const double middle = kTurning.left(n) + kPersonWidth / 2;
+      if (middle > kEdge * scene::kWidth + 12)
+        expect_person(Regions(out), kTurning.left(n));
+      else if (middle < kEdge * scene::kWidth - 12)
+        fail_unless_equals_int(Regions(out).size(), 0);
+      gst_buffer_unref(out);
+    }
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(zones_that_are_set_while_it_plays_hold_for_persons_from_the_next_frame_on) {
+  for (const char* launch : {"personverify ! motiondetect name=detect ! identity",
+                             "motiondetect name=detect ! personverify ! identity"}) {
+    Line line(launch);
+    g_autoptr(GstElement) detect = gst_bin_get_by_name(GST_BIN(line.harness->element), "detect");
+    for (int n = 0; n < 60; ++n) {
+      if (n == 40) g_object_set(detect, "zones", "exclude 0,0 1,0 1,1 0,1", nullptr);
+      if (n == 50) g_object_set(detect, "zones", "", nullptr);
+      GstBuffer* out = line.through(kTurning.frame(n));
+      if (n >= 30) fail_unless_equals_int(Regions(out).size(), n >= 40 && n < 50 ? 0 : 1);
+      gst_buffer_unref(out);
+    }
+  }
+}
+GST_END_TEST
+
 // Of three frames two are dropped between the two, among them such at which a look has begun or ended.
 GST_START_TEST(dropped_frames_between_the_two_show_nobody_where_nobody_is) {
   Line line("personverify rate=5 ! identity name=between ! motiondetect ! identity");
@@ -238,6 +281,8 @@ Suite* person_looks_suite() {
   tcase_add_test(tests, in_front_of_the_stages_it_is_as_in_front_of_motiondetect);
   tcase_add_test(tests, what_it_has_seen_follows_a_picture_that_is_converted_and_scaled);
   tcase_add_test(tests, one_warning_says_that_what_it_has_seen_is_lost_by_cropping);
+  tcase_add_test(tests, zones_hold_for_persons_whom_only_the_detector_shows);
+  tcase_add_test(tests, zones_that_are_set_while_it_plays_hold_for_persons_from_the_next_frame_on);
   tcase_add_test(tests, dropped_frames_between_the_two_show_nobody_where_nobody_is);
   tcase_add_test(tests, repeated_frames_change_no_identity);
   tcase_add_test(tests, a_tracker_that_is_linked_later_takes_over);

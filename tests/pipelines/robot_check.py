@@ -215,18 +215,19 @@ def checks(folder):
 def by_motion_alone(folder):
     """Where personverify is missing a camera goes by motion alone, and a line says so; one that must have it lacks it."""
     camera = '[[camera]]\nname = "gate"\nkind = "rtsp"\nuri = "rtsp://127.0.0.1/a"\n'
-    alone, by_zones = 'are found by motion alone', '"zones" of [camera.detection]'
+    alone, by_preset = 'are found by motion alone', '"preset" of [camera.detection]'
     zones = camera + '[camera.detection]\nzones = "include 0,0 1,0 1,1"\n'
+    traffic = camera + '[camera.detection]\npreset = "traffic"\n'
 
     def said(text, status=0):
         code, words = check(folder, text)
         assert code == status, (text, code, words)
         return words
     if 'persons' in HAS:
-        assert alone not in said(camera) and alone not in said(FRONT)
-        words = said(zones)
-        assert words.count(alone) == 1 and 'gate' in words and by_zones in words, words
-        assert alone not in said(zones + '[camera.persons]\n')
+        assert all(alone not in said(text) for text in (camera, zones, FRONT))
+        words = said(traffic)
+        assert words.count(alone) == 1 and 'gate' in words and by_preset in words, words
+        assert alone not in said(traffic + '[camera.persons]\n')
     before = dict(os.environ)
     os.chdir(folder)
     os.environ.update(without_verify())
