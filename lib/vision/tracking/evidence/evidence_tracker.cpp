@@ -136,7 +136,7 @@ void EvidenceTracker::match_look(bool sure) {
   for (std::size_t i = 0; i < tracks_.size(); ++i)
     if (!tracks_[i].hit && !tracks_[i].holds_several && tracks_[i].looked().area() > 0) rows_.push_back(i);
   for (std::size_t j = 0; j < bodies_.size(); ++j)
-    if ((bodies_[j].score >= p_.sure) == sure && bodies_[j].score > p_.weak) columns_.push_back(j);
+    if ((bodies_[j].score >= p_.sure) == sure && bodies_[j].score > p_.least) columns_.push_back(j);
   const auto looked = [&](std::size_t i) { return tracks_[i].looked(); };
   const auto box_of = [&](std::size_t j) { return bodies_[j].box; };
   pair_by_overlap(looked, box_of, [&](std::size_t i, std::size_t j, double overlap) {
@@ -289,9 +289,9 @@ void EvidenceTracker::judge_look(const EvidenceLook& look) {
     t.moved = t.moved || moving;
     if (!t.hit) {
       const bool moves = t.since_motion <= look.seconds;
-      if (!moves && t.looked().area() > 0) t.evidence -= p_.missed;
+      if (!moves && t.looked().area() > 0) t.evidence -= p_.against;
       if (should_be_seen(t)) t.miss_look(p_);
-      t.quality += p_.quality_gain * ((moves ? p_.motion_quality : p_.missed_quality) - t.quality);
+      t.quality += p_.quality_gain * ((moves ? p_.motion_quality : 0.0) - t.quality);
     }
     if (t.mirrors) {
       t.person = t.person && t.person_evidence > 0;
@@ -301,7 +301,7 @@ void EvidenceTracker::judge_look(const EvidenceLook& look) {
     if (moving)
       t.add(p_.moving * std::min(look.seconds, 1.0), p_);
     else if (calm && !t.travels(p_.travel))
-      t.evidence -= p_.resting;
+      t.evidence -= p_.against;
   }
 }
 
@@ -348,6 +348,15 @@ void EvidenceTracker::remember_motion() {
   }
 }
 
+// Published persons, one each, that lie in the box.
+double EvidenceTracker::area_of_persons_in(const Box& box) const {
+  double area = 0;
+  for (const EvidenceTrack& t : tracks_)
+    if (t.published && t.shown() && !t.holds_several && share_within(t.box(), box) >= p_.body.nested)
+      area += t.box().area();
+  return area;
+}
+
 void EvidenceTracker::publish(std::span<const Track> motion) {
   results_.clear();
   const double across = static_cast<double>(frame_.size.width) / frame_.picture.width;
@@ -355,11 +364,7 @@ void EvidenceTracker::publish(std::span<const Track> motion) {
   for (EvidenceTrack& t : tracks_) {
     if (!t.published || (!t.mirrors && t.unseen > shown_time())) continue;
     if (frame_.persons_only && !t.person) continue;
-    const auto stands_for = [&](const EvidenceTrack& other) {
-      return other.published && other.shown() && !other.holds_several &&
-             share_within(other.box(), t.box()) >= p_.body.nested;
-    };
-    if (t.holds_several && std::ranges::any_of(tracks_, stands_for)) continue;
+    if (t.holds_several && area_of_persons_in(t.box()) >= p_.filled * t.box().area()) continue;
     const Box box = inside(scaled(t.box(), across, down), frame_.size);
     if (box.width < 1 || box.height < 1) continue;
     if (t.id == 0) t.id = ++last_id_;

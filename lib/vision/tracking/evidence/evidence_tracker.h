@@ -95,6 +95,7 @@ class EvidenceTracker {
   void judge_look(const EvidenceLook& look);
   void end_tracks();
   void remember_motion();
+  double area_of_persons_in(const Box& box) const;
   void publish(std::span<const Track> motion);
 
   EvidenceParameters p_;
