@@ -122,7 +122,7 @@ void EvidenceTrack::add_look(double more, const EvidenceParameters& p) {
 }
 
 void EvidenceTrack::miss_look(const EvidenceParameters& p) {
-  person_evidence = std::max(person_evidence - p.missed, 0.0);
+  person_evidence = std::max(person_evidence - p.against, 0.0);
 }
 
 }  // namespace cerberus::vision
