@@ -18,8 +18,8 @@
  *   published once a look has shown it, or while it is fast, and a network's box goes before its own where the two differ
  *   by more than half. Where the scene is not calm (the picture shakes or blurs, or near things pass) motion tracks do not count;
  * - a person whom no motion track shows is followed by the picture from look to look;
- * - a motion track is a person once looks have shown it surely enough (one that is beyond doubt, or some at the threshold), and
- *   only moves again once looks that should see it, as they have seen it smaller, have missed it often enough. The confidence
+ * - a motion track is a person once a look has shown it, and only moves again once looks that should see it, as they have
+ *   seen it smaller, have missed it often enough: five of one that was seen once, at the threshold. The confidence
  *   of a person is this evidence of looks, 0 to 1;
  * - a person whom no motion track shows counts where `zones` of `motiondetect` or `motionregions` let the middle of the box
  *   count, unless the picture is cropped between that element and the one that follows;

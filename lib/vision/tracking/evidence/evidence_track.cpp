@@ -116,13 +116,8 @@ void EvidenceTrack::add(double more, const EvidenceParameters& p) {
   evidence = std::min(p.ceiling, evidence + more);
 }
 
-void EvidenceTrack::add_look(double more, const EvidenceParameters& p) {
-  add(more, p);
+void EvidenceTrack::add_person(double more, const EvidenceParameters& p) {
   person_evidence = std::clamp(person_evidence + more, 0.0, p.ceiling);
-}
-
-void EvidenceTrack::miss_look(const EvidenceParameters& p) {
-  person_evidence = std::max(person_evidence - p.against, 0.0);
 }
 
 }  // namespace cerberus::vision

@@ -67,9 +67,7 @@ struct EvidenceTrack {
   // s for which it has not gone, grown or shrunk by EvidenceParameters::travel.
   double rested() const { return age - rest_.age; }
   void add(double more, const EvidenceParameters& p);
-  // A look adds to both sums, or takes from that of a person.
-  void add_look(double more, const EvidenceParameters& p);
-  void miss_look(const EvidenceParameters& p);
+  void add_person(double more, const EvidenceParameters& p);
 
  private:
   struct Place {

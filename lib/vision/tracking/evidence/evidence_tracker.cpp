@@ -147,9 +147,10 @@ void EvidenceTracker::match_look(bool sure) {
       t.distrust();
     }
     if (!t.mirrors) t.correct(body.box, p_);
-    t.add_look(std::max(body.score - (t.moved ? p_.neutral : p_.unmoved), p_.least), p_);
+    t.add(std::max(body.score - (t.moved ? p_.neutral : p_.unmoved), p_.least), p_);
     t.quality += p_.quality_gain * (body.score - t.quality);
-    t.person = t.person || (sure && t.person_evidence >= p_.sure);
+    t.add_person(sure ? body.score : -p_.missed_person, p_);
+    t.person = t.person || sure;
     if (sure) t.least_seen = std::min(t.least_seen, t.looked().height);
     t.hit = true;
     t.unseen = 0;
@@ -176,7 +177,8 @@ void EvidenceTracker::begin_at(const PersonDetection& body) {
   if (std::ranges::any_of(tracks_, covers)) return;
   EvidenceTrack t = EvidenceTrack::begin(box);
   t.person = t.hit = true;
-  t.evidence = t.person_evidence = std::clamp(body.score - p_.unmoved, 0.0, p_.ceiling);
+  t.evidence = std::clamp(body.score - p_.unmoved, 0.0, p_.ceiling);
+  t.add_person(body.score, p_);
   t.least_seen = t.height;
   t.quality = p_.quality_gain * body.score;
   tracks_.push_back(t);
@@ -290,7 +292,7 @@ void EvidenceTracker::judge_look(const EvidenceLook& look) {
     if (!t.hit) {
       const bool moves = t.since_motion <= look.seconds;
       if (!moves && t.looked().area() > 0) t.evidence -= p_.against;
-      if (should_be_seen(t)) t.miss_look(p_);
+      if (should_be_seen(t)) t.add_person(-p_.missed_person, p_);
       t.quality += p_.quality_gain * ((moves ? p_.motion_quality : 0.0) - t.quality);
     }
     if (t.mirrors) {
