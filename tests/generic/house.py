@@ -83,7 +83,7 @@ VISION = {
     'vision/change': ('vision/ego_motion',),
     'vision/components': ('vision/change',),
     'vision/background': ('vision/components',),
-    'vision/burnt_in': ('vision/geometry',),
+    'vision/burnt_in': ('vision/change',),
     'vision/detection': ('vision/geometry',),
     'vision/persons': ('vision/geometry',),
     'vision/zones': ('vision/geometry',),
