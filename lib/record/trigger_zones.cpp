@@ -15,9 +15,7 @@ bool TriggerZones::contains(const vision::Box& box, vision::Size frame,
   // Inside the frame, so that feet beyond its edge stand at the edge.
   const auto place = [](double at, int extent) { return std::clamp(at, 0.5, extent - 0.5); };
   const vision::Point feet{place(box.x + box.width / 2, frame.width), place(box.bottom(), frame.height)};
-  std::optional<vision::Direction> direction;
-  if (camera && camera->lens.known()) direction = camera->direction(feet);
-  return zones_.contain({feet.x / frame.width, feet.y / frame.height}, direction);
+  return zones_.contain(feet, frame, camera);
 }
 
 }  // namespace cerberus::record

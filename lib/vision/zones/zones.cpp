@@ -132,6 +132,12 @@ bool Zones::contain(Point at, const std::optional<Direction>& direction) const {
   return included || !limited;
 }
 
+bool Zones::contain(Point pixel, Size frame, const std::optional<CameraOrientation>& camera) const {
+  std::optional<Direction> direction;
+  if (camera && camera->lens.known()) direction = camera->direction(pixel);
+  return contain({pixel.x / frame.width, pixel.y / frame.height}, direction);
+}
+
 // Whether plane_ must be drawn anew for this view; it is from now on.
 bool Zones::changed(const std::optional<View>& view) {
   if (!in_world_) return false;

@@ -51,6 +51,8 @@ class Zones {
   // Returns whether a point counts. at: fractions of the picture; direction: where it lies in the world, if that is
   // known.
   bool contain(Point at, const std::optional<Direction>& direction) const;
+  // The same of a point in pixels of a frame. camera: with a lens that is not known, or none: its direction is not known.
+  bool contain(Point pixel, Size frame, const std::optional<CameraOrientation>& camera) const;
 
  private:
   struct Polygon {
