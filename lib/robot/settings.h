@@ -80,7 +80,6 @@ enum class PersonsUse : std::uint8_t {
 struct PersonsSettings {
   PersonsUse use = PersonsUse::automatic;
   Properties properties;  // of personverify
-
 };
 
 // The robot's own drive: docs/manual/base.md.

@@ -52,8 +52,8 @@ struct EvidenceParameters {
   // h that a track goes within a second before it counts as moved; what no look has shown is published from then on.
   // Without that 1.9 identities a minute with nobody instead of .9.
   double travel = 0.25;
-  // s for which what motion does not show has not gone so far, from which on it is stopped. derived: who walks at .2 m/s goes on.
-  // Guard: unit evidence_tracker.
+  // s within which a track that motion does not show goes less than `travel`: then it is stopped. derived: a person at .2 m/s
+  // is not. Guard: unit evidence_tracker.
   double stopped = 2;
   // h/s and s: a motion track which is as fast for as long is published before a camera that moves, seen by a look or not.
   // swept: .3 to 1 h/s differ by .02 in the recall of one labelled object; .3 s gives .01 more of it than .5 s.
