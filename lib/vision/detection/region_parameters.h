@@ -29,11 +29,7 @@ struct RegionParameters {
   double usual_aspect = 1.8;  // if its height / width is above this
 
   // Samples of the height prior. Lengths in heights of the component.
-  double alone = 0.4;                   // distance to the next component
-  double step_x = 0.5, step_y = 0.3;    // by which the foot moves from frame to frame, at most
-  double shrinks = 0.85, grows = 1.18;  // times the height of the frame before
-  int least_looks = 3;                  // frames in a row
-  double walked = 0.15;                 // distance from the first place
+  double alone = 0.4;  // distance to the next component
 
   // Pieces of one person. In expected heights.
   double across = 0.1;  // gap from side to side
@@ -43,7 +39,8 @@ struct RegionParameters {
   // Blobs before the height of people is known.
   int least_unknown =
       40;  // pixels: bodies are looked for in a blob of this height. derived: a head has 5 pixels
-  // Heights of a body that it has walked, its head free all the way, before it is published. measured: with .08 the place of
+  // Heights that a blob which looks like one person has walked before it is a sample of the height prior, and a body, its
+  // head free all the way, before it is published. measured: with .08 the place of
   // a person who leaves is a region for a frame (unit places).
   double walked_to_be_seen = 0.1;
   // Share of a body's foreground that differs from the frame before, at least, where it goes somewhere: bodies are found here

@@ -18,9 +18,8 @@
 namespace cerberus::vision {
 namespace {
 
-constexpr std::size_t kMostParts = 128;   // components beyond which a picture is clutter, not people
-constexpr std::size_t kMostWalkers = 24;  // isolated walking persons, at a time
-constexpr std::size_t kMostBlocks = 16;   // cars and the like at a time
+constexpr std::size_t kMostParts = 128;  // components beyond which a picture is clutter, not people
+constexpr std::size_t kMostBlocks = 16;  // cars and the like at a time
 constexpr std::size_t kMostRegions = 2 * kMostParts;  // persons and the components that they do not explain
 
 // Returns whether a component may be one person: upright, reasonably filled, and not cut by the picture's edge.
@@ -52,17 +51,12 @@ struct RegionFinder::State {
   HeightPrior prior{parameters.height};
   PeopleFinder people{parameters.people};
   TwoFrameConfirmation newcomers{parameters.confirmation};
-  struct Walker {      // a blob that looks like one person
-    Point foot, from;  // its present place and the first one, both in pixels of the present frame
-    float height;
-    int looks;
-  };
-  std::vector<Walker> walkers, walkers_before;
   std::vector<Box> blocks, blocks_before;  // groups too wide and too solid for people, now and a frame ago
   std::vector<int> group;                  // of each component
   OutlineFinder outline_finder{parameters.outline};
-  std::vector<Outline> outlines;            // of each component
-  WalkingBodies bodies{parameters.bodies};  // with a free head
+  std::vector<Outline> outlines;             // of each component
+  WalkingBodies walkers{parameters.bodies};  // isolated blobs that look like one person
+  WalkingBodies bodies{parameters.bodies};   // with a free head
   std::vector<Region> regions;
   int seen = 0;  // frames of this scene
 
@@ -72,7 +66,7 @@ struct RegionFinder::State {
   }
   void preallocate(Size picture);
   void find_components();
-  void learn(const Transform& motion);
+  void learn();
   void group_components();
   void explain(int group);
   void explain_unknown(int group, const Bounds& window);
@@ -92,13 +86,12 @@ void RegionFinder::State::preallocate(Size picture) {
   people.preallocate(picture);
   newcomers.preallocate();
   const std::size_t parts = labeller.limits().components;
-  vision::preallocate(walkers, kMostWalkers);
-  vision::preallocate(walkers_before, kMostWalkers);
   vision::preallocate(blocks, kMostBlocks);
   vision::preallocate(blocks_before, kMostBlocks);
   vision::preallocate(group, std::min(parts, kMostParts));
   outline_finder.preallocate(picture.width);
   vision::preallocate(outlines, parts);
+  walkers.preallocate();
   bodies.preallocate();
   vision::preallocate(regions, std::max(parts, std::min(2 * parts, kMostRegions)));
   size = picture;  // assigned last: after a failed allocation the next call tries again
@@ -118,11 +111,9 @@ void RegionFinder::State::find_components() {
 
 // Only walkers are samples of the height prior: blobs that look like one person, isolated, of the same height for three
 // frames, and moving. Fragments of a person close by come in crowds, flicker and stay in place.
-void RegionFinder::State::learn(const Transform& motion) {
+void RegionFinder::State::learn() {
   const RegionParameters& p = parameters.regions;
   const auto parts = labeller.components();
-  std::swap(walkers, walkers_before);
-  walkers.clear();
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Component& c = parts[i];
     const Bounds& body = outlines[i].body;
@@ -130,24 +121,10 @@ void RegionFinder::State::learn(const Transform& motion) {
     const double reach = p.alone * c.height();
     const bool alone = std::none_of(parts.begin(), parts.end(),
                                     [&](const Component& o) { return &o != &c && are_within(reach, c, o); });
-    if (!alone || walkers.size() == kMostWalkers) continue;
-    const double h = c.height();
-    Walker walker{
-        {(body.left + body.right) / 2.0, static_cast<double>(c.bottom)}, {}, static_cast<float>(h), 1};
-    walker.from = walker.foot;
-    for (const Walker& w : walkers_before) {
-      const Point foot = motion.apply(w.foot);
-      if (std::abs(foot.x - walker.foot.x) > p.step_x * h ||
-          std::abs(foot.y - walker.foot.y) > p.step_y * h || w.height < p.shrinks * h ||
-          w.height > p.grows * h)
-        continue;
-      walker.from = motion.apply(w.from);
-      walker.looks = w.looks + 1;
-      break;
-    }
-    const double walked = std::hypot(walker.foot.x - walker.from.x, walker.foot.y - walker.from.y);
-    if (walker.looks >= p.least_looks && walked > p.walked * h) prior.learn(c.bottom, h, h);
-    walkers.push_back(walker);
+    const double height = c.height();
+    const Box box{static_cast<double>(body.left), static_cast<double>(c.top),
+                  static_cast<double>(body.width()), height};
+    if (alone && walkers.add(box).farthest > p.walked_to_be_seen) prior.learn(c.bottom, height, height);
   }
 }
 
@@ -372,7 +349,7 @@ void RegionFinder::set_parameters(const DetectionParameters& parameters) {
 
 void RegionFinder::reset() {
   state_->prior.reset();
-  state_->walkers.clear();
+  state_->walkers.reset();
   state_->bodies.reset();
   state_->blocks.clear();
   state_->blocks_before.clear();
@@ -384,9 +361,9 @@ void RegionFinder::reset() {
 std::size_t RegionFinder::bytes() const {
   const State& s = *state_;
   return sizeof(State) + s.moving.bytes() + s.closed.bytes() + s.morphology.bytes() + s.labeller.bytes() +
-         s.parting.bytes() + s.people.bytes() + s.newcomers.bytes() + bytes_of(s.walkers) +
-         bytes_of(s.walkers_before) + bytes_of(s.blocks) + bytes_of(s.blocks_before) + bytes_of(s.group) +
-         bytes_of(s.outlines) + s.bodies.bytes() + s.outline_finder.bytes() + bytes_of(s.regions);
+         s.parting.bytes() + s.people.bytes() + s.newcomers.bytes() + s.walkers.bytes() + bytes_of(s.blocks) +
+         bytes_of(s.blocks_before) + bytes_of(s.group) + bytes_of(s.outlines) + s.bodies.bytes() +
+         s.outline_finder.bytes() + bytes_of(s.regions);
 }
 
 std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uint16_t> labels,
@@ -401,6 +378,7 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
   }
   ++s.seen;
   s.prior.advance(motion, s.size);
+  s.walkers.advance(motion);
   s.bodies.advance(motion);
   pack(mask, s.moving.view());
   s.change = change.difference.size() == mask.size() ? change : Change{};
@@ -417,7 +395,7 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
   if (!s.options.people || parts.size() > kMostParts) {
     for (std::size_t i = 0; i < parts.size(); ++i) s.add_plain(i);
   } else {
-    s.learn(motion);
+    s.learn();
     s.group_components();
     for (std::size_t i = 0; i < parts.size(); ++i)
       if (s.group[i] == static_cast<int>(i)) s.explain(static_cast<int>(i));
