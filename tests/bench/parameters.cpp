@@ -44,32 +44,10 @@ void name(Numbers n, BlobParting::Parameters& p) {
 }
 
 void name(Numbers n, RegionParameters& p) {
-  n.add({N(least_share),
-         N(least_height),
-         N(narrowest),
-         N(widest),
-         N(least_filled),
-         N(tallest),
-         N(usual_least),
-         N(usual_most),
-         N(usual_aspect),
-         N(alone),
-         N(across),
-         N(down),
-         N(joined),
-         N(least_unknown),
-         N(walked_to_be_seen),
-         N(stirs),
-         N(beside),
-         N(loose),
-         N(feet),
-         N(slack),
-         N(explained),
-         N(same_block),
-         N(young),
-         N(rim),
-         N(person_confidence),
-         N(other_confidence)});
+  n.add({N(least_share), N(narrowest),  N(widest), N(least_filled), N(tallest),   N(usual_least),
+         N(usual_most),  N(alone),      N(across), N(down),         N(joined),    N(least_unknown),
+         N(walked),      N(stirs),      N(beside), N(loose),        N(feet),      N(slack),
+         N(explained),   N(same_block), N(young),  N(rim),          N(confidence)});
 }
 
 void name(Numbers n, PeopleFinder::Part& p) {
@@ -89,7 +67,7 @@ void name(Numbers n, PeopleFinder::Parameters& p) {
 
 void name(Numbers n, HeightPrior::Parameters& p) {
   n.add({N(spread), N(agree), N(share), N(least), N(uncertain), N(repeats), N(guesses), D(through_horizon),
-         D(slope_spread), N(baseline), N(steepest), D(refit), N(least_height), N(zoom)});
+         D(slope_spread), N(baseline), D(refit)});
 }
 
 void name(Numbers n, OutlineFinder::Parameters& p) {

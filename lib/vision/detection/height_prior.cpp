@@ -11,9 +11,7 @@ void HeightPrior::advance(const Transform& motion, Size picture) {
   const Point moved = motion.apply(middle);
   const Point lower = motion.apply({middle.x, middle.y + 1});
   const double scale = std::hypot(lower.x - moved.x, lower.y - moved.y), shift = moved.y - middle.y;
-  if (!std::isfinite(scale) || !std::isfinite(shift) ||
-      !(scale > 1 / parameters_.zoom && scale < parameters_.zoom))
-    return reset();
+  if (!std::isfinite(scale) || !std::isfinite(shift)) return reset();
   const auto row = [&](double y) { return middle.y + shift + scale * (y - middle.y); };
   for (std::size_t i = 0; i < count_; ++i) {
     samples_[i].foot = static_cast<float>(row(samples_[i].foot));
@@ -61,7 +59,7 @@ void HeightPrior::fit() {
       if (std::abs(a.foot - b.foot) < q.baseline * std::max(a.height, b.height)) continue;
       slope = (a.height - b.height) / (a.foot - b.foot);
     }
-    if (slope < 0 || slope > q.steepest) continue;
+    if (slope < 0) continue;
     const double offset = a.height - slope * a.foot, sum = agreement(slope, offset);
     if (sum > best) best = sum, best_slope = slope, best_offset = offset;
   }
@@ -80,7 +78,7 @@ void HeightPrior::fit() {
   const double spread = syy - n * mean_foot_ * mean_foot_, joint = syh - n * mean_foot_ * mean_height_;
   const double usual = mean_height_ / std::max(mean_foot_, 1.0);
   const double precision = spread / variance, prior = 1 / (q.slope_spread * usual * q.slope_spread * usual);
-  slope_ = std::clamp((joint / variance + usual * prior) / (precision + prior), 0.0, q.steepest);
+  slope_ = std::max((joint / variance + usual * prior) / (precision + prior), 0.0);
   slope_variance_ = 1 / (precision + prior);
   mean_variance_ = variance / n;
   ready_ = true;
@@ -95,8 +93,7 @@ double HeightPrior::height(double foot) const {
   const Parameters& q = parameters_;
   if (!ready_) return 0;
   const double d = foot - mean_foot_, h = mean_height_ + slope_ * d;
-  if (!(h > q.least_height) || mean_variance_ + slope_variance_ * d * d > q.uncertain * h * q.uncertain * h)
-    return 0;
+  if (!(h > 0) || mean_variance_ + slope_variance_ * d * d > q.uncertain * h * q.uncertain * h) return 0;
   return h;
 }
 

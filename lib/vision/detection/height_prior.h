@@ -36,11 +36,8 @@ class HeightPrior {
     // Standard deviation of the slope before any sample, times the slope that belongs to a horizon at the picture's upper
     // edge: the camera of a robot has the horizon in the middle. swept: 1 to 3.
     double slope_spread = 2;
-    double baseline = 0.2;    // of the larger height: distance of the foot rows of a pair, at least
-    double steepest = 4.0;    // body height / mounting height. derived: a camera at 0.45 m
-    int refit = 16;           // a fit after every count / refit samples: later ones hardly change the line
-    double least_height = 4;  // pixels; a lower expected height is no person to be found
-    double zoom = 2;          // times within two frames; beyond it the scene is another one
+    double baseline = 0.2;  // of the larger height: distance of the foot rows of a pair, at least
+    int refit = 16;         // a fit after every count / refit samples: later ones hardly change the line
   };
 
   HeightPrior() = default;

@@ -25,7 +25,7 @@ constexpr std::size_t kMostRegions = 2 * kMostParts;  // persons and the compone
 // Returns whether a component may be one person: upright, reasonably filled, and not cut by the picture's edge.
 bool looks_like_one_person(const Component& c, const Bounds& body, Size picture, const RegionParameters& p) {
   const double aspect = static_cast<double>(body.height()) / body.width();
-  return c.height() >= p.least_height && aspect > p.widest && aspect < p.narrowest &&
+  return aspect > p.widest && aspect < p.narrowest &&
          c.area > p.least_filled * body.width() * body.height() && c.left > 0 && c.top > 0 &&
          c.right < picture.width && c.bottom < picture.height;
 }
@@ -124,7 +124,7 @@ void RegionFinder::State::learn() {
     const double height = c.height();
     const Box box{static_cast<double>(body.left), static_cast<double>(c.top),
                   static_cast<double>(body.width()), height};
-    if (alone && walkers.add(box).farthest > p.walked_to_be_seen) prior.learn(c.bottom, height, height);
+    if (alone && walkers.add(box).farthest > p.walked) prior.learn(c.bottom, height, height);
   }
 }
 
@@ -174,8 +174,8 @@ void RegionFinder::State::add_plain(std::size_t i, RegionKind kind) {
            std::min(box.bottom() + rim, static_cast<double>(size.height)) - top};
   }
   regions.push_back({box, 0,
-                     person ? std::min(1.0, p.person_confidence + (1 - p.person_confidence) * filled)
-                            : std::min(1.0, p.other_confidence * filled),
+                     person ? std::min(1.0, p.confidence + (1 - p.confidence) * filled)
+                            : std::min(1.0, p.confidence * filled),
                      static_cast<int>(i) + 1, kind});
 }
 
@@ -267,7 +267,7 @@ void RegionFinder::State::explain_unknown(int g, const Bounds& window) {
   const auto found = people.find(moving.view(), window, prior);
   std::array<Person, PeopleFinder::kMostPeople> persons;
   const auto end = std::ranges::copy_if(found, persons.begin(), [&](const Person& person) {
-                     return walked(person.box) > p.walked_to_be_seen;
+                     return walked(person.box) > p.walked;
                    }).out;
   const std::span<const Person> walking(persons.begin(), end);
   const double rest = unexplained(window, found);
@@ -308,12 +308,12 @@ void RegionFinder::State::explain(int g) {
   });
   const auto found = people.find(moving.view(), window, prior, was_block);
   if (people.found_wide_block() && blocks.size() < kMostBlocks) blocks.push_back(whole);
-  const bool slender = body.height() > p.usual_aspect * body.width();
+  const bool slender = body.height() > p.widest * body.width();
   if (found.empty() && slender && window.height() > p.usual_least * expected &&
       window.height() < p.usual_most * expected) {
     // Much of a person may look like the floor: a group as high and as slender as one person is one.
     if (members == 1) return add_all([](const Component&) { return RegionKind::person_like; });
-    const double middle = (body.left + body.right) / 2.0, width = window.height() / p.usual_aspect / 2;
+    const double middle = (body.left + body.right) / 2.0, width = window.height() / p.widest / 2;
     const Person person{{middle - width / 2, whole.y, width, whole.height}, 0};
     return add_people(g, window, {&person, 1});
   }
