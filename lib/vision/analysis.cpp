@@ -39,8 +39,9 @@ GrayView Analysis::mask() const {
 std::size_t Analysis::bytes() const {
   std::size_t sum = threads::Pool<Analysis>::object_bytes() + regions->regions.capacity() * sizeof(Region) +
                     tracks->capacity() * sizeof(Track);
-  for (const GrayPicture* picture : {&*luma, &differences->current, &differences->previous, &foreground->mask,
-                                     &foreground->background, &regions->mask})
+  for (const GrayPicture* picture :
+       {&*luma, &differences->current, &differences->previous, &differences->tolerant, &foreground->mask,
+        &foreground->background, &regions->mask})
     if (*picture) sum += threads::Pool<Image<std::uint8_t>>::object_bytes() + (*picture)->bytes();
   if (regions->labels) sum += threads::Pool<Image<std::uint16_t>>::object_bytes() + regions->labels->bytes();
   return sum;

@@ -61,6 +61,7 @@ class Field {
 struct Differences {
   GrayPicture current;   // D(k), analysis pixels
   GrayPicture previous;  // D(k-1); none where no stage or element reads it
+  GrayPicture tolerant;  // D(k) without what a displacement of a pixel explains; none where the camera stands
   Histogram histogram{};
   DifferenceResult result;  // with the change of light that was taken out
   bool blurred = false;     // the pictures were

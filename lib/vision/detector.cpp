@@ -95,8 +95,12 @@ void Detector::find_differences(Analysis& record, const DetectorFrame& frame) {
   out.blurred = options_.differences.blur > 1;
   out.current = gray(luma.size());
   if (previous) out.previous = gray(luma.size());
+  if (!frame.motion.still) out.tolerant = gray(luma.size());
+  const auto wanted = [](const GrayPicture& picture) {
+    return picture ? picture->view() : MutableGrayView{};
+  };
   out.result = differences_->update(luma, frame.motion.in(luma.size(), frame.size), out.current->view(),
-                                    previous ? out.previous->view() : MutableGrayView{}, out.histogram);
+                                    wanted(out.previous), wanted(out.tolerant), out.histogram);
 }
 
 void Detector::find_foreground(Analysis& record, const DetectorFrame& frame) {
@@ -191,8 +195,11 @@ void Detector::track(Analysis& record, const DetectorFrame& frame, std::span<con
       calm_.add(record.camera->corners, tracked_, frame.size, frame.seconds);
     record.camera.stored().calm = calm_.share();
   }
-  own_motion_.begin_frame(record.differences ? GrayView(record.differences->current->view()) : GrayView{},
-                          calm_.share(), frame.seconds);
+  GrayView difference;
+  if (record.differences)
+    difference =
+        (record.differences->tolerant ? record.differences->tolerant : record.differences->current)->view();
+  own_motion_.begin_frame(difference, calm_.share(), frame.seconds);
   tracked_.clear();
   withholds_ = false;
   const Lens lens = frame.lens(options_.field_of_view);

@@ -13,7 +13,7 @@ struct AreaChain {
   explicit AreaChain(vision::Size size) : current(size), previous(size), mask(size) {}
   vision::ForegroundMaskResult feed(vision::GrayView picture, const vision::Transform& motion = {},
                                     bool still = true, double seconds = 0) {
-    const auto d = difference.update(picture, motion, current.view(), previous.view(), histogram);
+    const auto d = difference.update(picture, motion, current.view(), previous.view(), {}, histogram);
     return area.update({.picture = picture,
                         .motion = motion,
                         .still = still,

@@ -50,8 +50,8 @@ START_TEST(in_another_only_one_that_stands_out_and_after_a_while) {
   ck_assert(!believed(walker, difference(10, 40), 1));
   ck_assert(believed(walker, difference(10, 40), 15));
   ck_assert(!believed(ghost, difference(20, 24), 50));
-  OwnMotionEvidence faint;  // three times as much, of nothing
-  ck_assert(!believed(faint, difference(1, 3), 50));
+  OwnMotionEvidence faint;  // twice as much, of nothing
+  ck_assert(!believed(faint, difference(1, 2), 50));
 }
 END_TEST
 

@@ -22,14 +22,14 @@ using namespace cerberus::tests;
 namespace {
 
 struct Run {
-  explicit Run(Size size, DifferenceOptions options = {}) : current(size), previous(size) {
+  explicit Run(Size size, DifferenceOptions options = {}) : current(size), previous(size), tolerant(size) {
     stage.set_options(options);
   }
   DifferenceResult feed(const Image<std::uint8_t>& picture, const Transform& motion = {}) {
-    return stage.update(picture.view(), motion, current.view(), previous.view(), histogram);
+    return stage.update(picture.view(), motion, current.view(), previous.view(), tolerant.view(), histogram);
   }
   ThreeFrameDifference stage;
-  Image<std::uint8_t> current, previous;
+  Image<std::uint8_t> current, previous, tolerant;
   Histogram histogram{};
 };
 
@@ -232,6 +232,62 @@ START_TEST(the_blur_is_the_rounded_mean_of_nine) {
 }
 END_TEST
 
+START_TEST(what_a_displacement_of_a_pixel_explains_is_left_out_of_the_tolerant_difference) {
+  // The camera is said to stand and moves by a pixel, to and fro: a scene of steep edges, a plain square that goes 6 pixels.
+  const Size size{64, 48};
+  Run run(size, plain());
+  const auto picture = [&](int k) {
+    Image<std::uint8_t> image(size);
+    const int shift = k % 2, left = 8 + 6 * k;
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) {
+        const bool square = x >= left && x < left + 12 && y >= 16 && y < 28;
+        image.view().at(x, y) = static_cast<std::uint8_t>(square ? 250 : (x + shift) / 8 % 2 ? 160 : 40);
+      }
+    return image;
+  };
+  run.feed(picture(0)), run.feed(picture(1)), run.feed(picture(2));
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      const bool edge = run.current.view().at(x, y) == 120;  // of the scene
+      if (edge) ck_assert_int_eq(run.tolerant.view().at(x, y), 0);
+    }
+  // The square covers 20 to 31 now and covered 14 to 25 before.
+  for (int y = 18; y < 26; ++y) {
+    for (int x = 27; x < 32; ++x) ck_assert_int_ge(run.tolerant.view().at(x, y), 250 - 160);
+    for (int x = 15; x < 19; ++x) ck_assert_int_ge(run.tolerant.view().at(x, y), 250 - 160);
+  }
+}
+END_TEST
+
+START_TEST(the_tolerant_difference_is_that_to_nine_pixels) {
+  // Sizes beside those of vectors, with light, noise and motion: the two differences are each other's control. Nine equal
+  // pixels of F(k-1) leave nothing to tolerate.
+  const Scene scene(4);
+  for (const int width : {33, 64, 97}) {
+    const Size size{width, 41};
+    Run run(size);
+    std::mt19937 random(8);
+    for (int k = 0; k < 6; ++k) {
+      Image<std::uint8_t> frame = seen(scene, size, 1.3 * k, 0);
+      add_noise(frame.view(), 2, 2, random);
+      run.feed(frame, k ? Transform::translation(1.3, 0) : Transform{});
+      for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+          ck_assert_int_le(run.tolerant.view().at(x, y), run.current.view().at(x, y));
+    }
+  }
+  const Size size{33, 21};
+  Run run(size, plain());
+  run.feed(flat(size, 100)), run.feed(flat(size, 100));
+  run.feed(with_pixel(size, 0, 0, 130)), run.feed(with_pixel(size, 32, 20, 90));
+  ck_assert_int_eq(run.tolerant.view().at(0, 0), 0);  // 100 is beside the 130 that was here
+  ck_assert_int_eq(run.current.view().at(0, 0), 30);
+  ck_assert_int_eq(run.tolerant.view().at(32, 20), 10);
+  ck_assert_int_eq(run.current.view().at(32, 20), 10);
+}
+END_TEST
+
 START_TEST(levels_are_counted_as_one_by_one) {
   std::mt19937 random(5);
   for (const int width : {1, 7, 15, 16, 63, 64, 65, 320, 1001}) {
@@ -280,7 +336,7 @@ START_TEST(without_the_difference_before_a_picture_less_is_held_and_all_else_is_
         add_noise(frame.view(), 2, 2, random);
         const Transform motion = k ? Transform::translation(pan, 0) : Transform{};
         const auto expected = both.feed(frame, motion);
-        const auto result = one.stage.update(frame.view(), motion, one.current.view(), {}, one.histogram);
+        const auto result = one.stage.update(frame.view(), motion, one.current.view(), {}, {}, one.histogram);
         ck_assert_int_eq(result.frames, expected.frames);
         ck_assert_uint_eq(result.valid, expected.valid);
         ck_assert_double_eq(result.gain, expected.gain);
@@ -311,7 +367,7 @@ START_TEST(the_difference_before_is_known_from_the_second_frame_on_in_which_it_i
       always.feed(frame, motion);
       const auto result =
           late.stage.update(frame.view(), motion, late.current.view(),
-                            wanted ? late.previous.view() : MutableGrayView{}, late.histogram);
+                            wanted ? late.previous.view() : MutableGrayView{}, {}, late.histogram);
       ck_assert_int_eq(result.frames, std::min(k + 1, 3));
       ck_assert(result.previous == (wanted && k != 5 && k != 12));
       for (int y = 0; y < size.height && wanted; ++y)
@@ -331,7 +387,8 @@ int main() {
        a_moving_camera_over_a_still_scene_shows_little, exposure_is_taken_out_and_reported,
        bands_of_a_rolling_shutter_are_taken_out_and_an_object_is_not, reset_and_a_new_size_begin_again,
        a_motion_that_cannot_be_begins_again, the_blur_is_the_rounded_mean_of_nine,
-       levels_are_counted_as_one_by_one,
+       what_a_displacement_of_a_pixel_explains_is_left_out_of_the_tolerant_difference,
+       the_tolerant_difference_is_that_to_nine_pixels, levels_are_counted_as_one_by_one,
        without_the_difference_before_a_picture_less_is_held_and_all_else_is_the_same,
        the_difference_before_is_known_from_the_second_frame_on_in_which_it_is_wanted,
        steady_state_allocates_nothing});

@@ -22,6 +22,16 @@ void difference_row(const std::uint8_t* a, const std::uint8_t* b, int count, std
   for (int x = 0; x < count; ++x) out[x] = static_cast<std::uint8_t>(a[x] > b[x] ? a[x] - b[x] : b[x] - a[x]);
 }
 
+void tolerant_difference_row(const std::uint8_t* a, const std::uint8_t* above, const std::uint8_t* row,
+                             const std::uint8_t* below, int count, std::uint8_t* out) {
+  for (int x = 0; x < count; ++x) {
+    std::uint8_t least = 255, most = 0;
+    for (const std::uint8_t* r : {above, row, below})
+      for (int u = x - 1; u <= x + 1; ++u) least = std::min(least, r[u]), most = std::max(most, r[u]);
+    out[x] = static_cast<std::uint8_t>(a[x] < least ? least - a[x] : a[x] > most ? a[x] - most : 0);
+  }
+}
+
 void count_levels(const std::uint8_t* row, int count, LevelCounter::Counts& counts) {
   int x = 0;
 #if HWY_TARGET != HWY_SCALAR
@@ -68,10 +78,16 @@ HWY_AFTER_NAMESPACE();
 namespace cerberus::vision {
 
 HWY_EXPORT(difference_row);
+HWY_EXPORT(tolerant_difference_row);
 HWY_EXPORT(count_levels);
 
 void difference_row(const std::uint8_t* a, const std::uint8_t* b, int count, std::uint8_t* out) {
   HWY_DYNAMIC_DISPATCH(difference_row)(a, b, count, out);
+}
+
+void tolerant_difference_row(const std::uint8_t* a, const std::uint8_t* above, const std::uint8_t* row,
+                             const std::uint8_t* below, int count, std::uint8_t* out) {
+  HWY_DYNAMIC_DISPATCH(tolerant_difference_row)(a, above, row, below, count, out);
 }
 
 void LevelCounter::Counts::empty_near() {

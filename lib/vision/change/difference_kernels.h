@@ -10,6 +10,11 @@ namespace cerberus::vision {
 // out[x] = |a[x] - b[x]| (Eq. 2).
 void difference_row(const std::uint8_t* a, const std::uint8_t* b, int count, std::uint8_t* out);
 
+// out[x] = how far a[x] is outside the levels of the nine neighbours of x in three rows, whose pixels -1 and `count` are
+// read too.
+void tolerant_difference_row(const std::uint8_t* a, const std::uint8_t* above, const std::uint8_t* row,
+                             const std::uint8_t* below, int count, std::uint8_t* out);
+
 // Counts grey levels. Nearly all of a difference is noise: the lowest levels are counted by comparing whole vectors,
 // the others one by one.
 class LevelCounter {

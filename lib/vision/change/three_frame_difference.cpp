@@ -34,6 +34,7 @@ struct ThreeFrameDifference::State {
   LightSamples samples;
   LightChange light, light_before;
   Image<std::uint8_t> relit;  // a row
+  Image<std::uint8_t> near;   // three rows of F(k-1) around a row, relit, with a pixel more on either side
   std::vector<RowSpan> spans;
 
   void preallocate(Size to, bool both);
@@ -43,6 +44,8 @@ struct ThreeFrameDifference::State {
     blur3(picture, options.blur, ring[0].view());
   }
   void subtract_before(GrayView first, GrayView second, MutableGrayView previous);
+  void load_near(GrayView first, GrayView present, int y);
+  const std::uint8_t* near_row(int y) const { return near.view().row(y % 3) + 1; }
   void forget() {
     frames = 0;
     before = {};
@@ -56,6 +59,7 @@ void ThreeFrameDifference::State::preallocate(Size to, bool both) {
     ring[0].resize(to);
     ring[1] = {};
     relit.resize({to.width, 1});
+    near.resize({to.width + 2, 3});
     spans.assign(static_cast<std::size_t>(to.height), {});
     forget();
     size = to;  // assigned last: after a failed allocation the next frame tries again
@@ -82,6 +86,20 @@ void ThreeFrameDifference::State::subtract_before(GrayView first, GrayView secon
   }
 }
 
+// Stores a row of F(k-1) in `near`; what it does not cover continues its first and last pixel.
+void ThreeFrameDifference::State::load_near(GrayView first, GrayView present, int y) {
+  const RowSpan span = spans[static_cast<std::size_t>(y)];
+  if (span.begin >= span.end) return;
+  std::uint8_t* row = near.view().row(y % 3) + 1;
+  const int count = span.end - span.begin;
+  if (light.none())
+    std::copy_n(first.row(y) + span.begin, count, row + span.begin);
+  else
+    light.relight(first.row(y) + span.begin, present.row(y) + span.begin, y, count, row + span.begin);
+  std::fill(row - 1, row + span.begin, row[span.begin]);
+  std::fill(row + span.end, row + size.width + 1, row[span.end - 1]);
+}
+
 ThreeFrameDifference::ThreeFrameDifference() : state_(std::make_unique<State>()) {}
 ThreeFrameDifference::~ThreeFrameDifference() = default;
 ThreeFrameDifference::ThreeFrameDifference(ThreeFrameDifference&&) noexcept = default;
@@ -98,7 +116,7 @@ void ThreeFrameDifference::reset() {
 
 DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform& motion,
                                               MutableGrayView current, MutableGrayView previous,
-                                              Histogram& histogram) {
+                                              MutableGrayView tolerant, Histogram& histogram) {
   State& s = *state_;
   const Size size = picture.size();
   const std::size_t height = static_cast<std::size_t>(size.height);
@@ -110,6 +128,14 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
 
   s.frames = std::min(s.frames + 1, 3);
   result.frames = s.frames;
+  const auto covered = [&](int y) {
+    const RowSpan span = s.spans[static_cast<std::size_t>(y)];
+    return span.begin < span.end;
+  };
+  const auto clear_outside = [&](std::uint8_t* row, RowSpan span) {
+    std::fill(row, row + span.begin, std::uint8_t{0});
+    std::fill(row + span.end, row + size.width, std::uint8_t{0});
+  };
   const auto clear = [&](MutableGrayView v) {
     for (int y = 0; y < v.height; ++y) std::fill_n(v.row(y), v.width, std::uint8_t{0});
   };
@@ -117,6 +143,7 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
     s.take(picture);
     clear(current);
     clear(previous);
+    clear(tolerant);
     s.before = motion;
     if (s.frames > 1) {  // the camera's motion is invalid: the history is discarded
       s.forget();
@@ -163,21 +190,31 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
   }
 
   LevelCounter counter;
+  if (!tolerant.empty()) s.load_near(first, present, 0);
   for (int y = 0; y < size.height; ++y) {
     const RowSpan span = s.spans[static_cast<std::size_t>(y)];
     const int count = span.end - span.begin;
     std::uint8_t* row = current.row(y);
     const std::uint8_t *f = s.ring[0].view().row(y) + span.begin, *f1 = first.row(y) + span.begin;
     std::uint8_t* relit = s.relit.view().data;
-    if (!s.light.none())
+    if (!tolerant.empty()) {
+      if (y + 1 < size.height) s.load_near(first, present, y + 1);
+      f1 = s.near_row(y) + span.begin;
+    } else if (!s.light.none())
       s.light.relight(f1, present.row(y) + span.begin, y, count, relit), f1 = relit;
     else if (waits)
       f1 = std::copy_n(f1, count, relit) - count;
     if (waits) std::copy_n(row, size.width, s.ring[0].view().row(y));
     difference_row(f, f1, count, row + span.begin);
     counter.add(row + span.begin, count);
-    std::fill(row, row + span.begin, std::uint8_t{0});
-    std::fill(row + span.end, row + size.width, std::uint8_t{0});
+    clear_outside(row, span);
+    if (!tolerant.empty()) {
+      const auto beside = [&](int v) {
+        return s.near_row(v >= 0 && v < size.height && covered(v) ? v : y) + span.begin;
+      };
+      tolerant_difference_row(f, beside(y - 1), f1, beside(y + 1), count, tolerant.row(y) + span.begin);
+      clear_outside(tolerant.row(y), span);
+    }
     result.valid += static_cast<std::uint32_t>(count);
   }
   counter.store(histogram);
@@ -189,8 +226,9 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
 
 std::size_t ThreeFrameDifference::bytes() const {
   const State& s = *state_;
-  return s.ring[0].bytes() + s.ring[1].bytes() + s.relit.bytes() + s.warp.bytes() + s.samples.bytes() +
-         s.light.bytes() + s.light_before.bytes() + s.spans.capacity() * sizeof(RowSpan) + sizeof(State);
+  return s.ring[0].bytes() + s.ring[1].bytes() + s.relit.bytes() + s.near.bytes() + s.warp.bytes() +
+         s.samples.bytes() + s.light.bytes() + s.light_before.bytes() + s.spans.capacity() * sizeof(RowSpan) +
+         sizeof(State);
 }
 
 }  // namespace cerberus::vision

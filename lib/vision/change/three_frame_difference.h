@@ -42,9 +42,10 @@ class ThreeFrameDifference {
   // D(k-1) = |F(k-1) - F(k-2)| (Eq. 2, whose printed elements are one index late), both in frame k's
   // coordinates; pixels not valid in all three frames are 0 in both. histogram: of `current` over the valid
   // pixels. Sizes of the three views must agree; a new size resets. `previous` may be empty: D(k-1) is not computed
-  // then, and is unavailable in the first frame that requests it again.
+  // then, and is unavailable in the first frame that requests it again. tolerant := how far F(k) is outside the levels of
+  // the 3 x 3 pixels of F(k-1), which a displacement of a pixel does not explain; it may be empty as well.
   DifferenceResult update(GrayView picture, const Transform& motion, MutableGrayView current,
-                          MutableGrayView previous, Histogram& histogram);
+                          MutableGrayView previous, MutableGrayView tolerant, Histogram& histogram);
   std::size_t bytes() const;
 
  private:
