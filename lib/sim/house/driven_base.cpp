@@ -72,8 +72,9 @@ void DrivenBase::step() {
       }
       // What is left along its heading.
       const double left = away_x * std::cos(yaw_) + away_y * std::sin(yaw_);
-      const double wanted =
+      const double most =
           std::min({leg.speed, kFastest, braking(std::max(left, 0.), .9 * traits_.acceleration)});
+      const double wanted = blocked_ ? 0 : most;
       speed_ = approach(speed_, wanted, traits_.acceleration * kStep);
       done = left <= kThere;
       if (done) speed_ = 0;

@@ -35,6 +35,8 @@ class DrivenBase {
 
   // In steps of 2 ms.
   void elapse(Time now);
+  // Something stands in its way: it brakes, and waits until it does not.
+  void block(bool blocked) { blocked_ = blocked; }
   double x() const { return x_; }
   double y() const { return y_; }
   double yaw() const { return yaw_; }
@@ -51,7 +53,7 @@ class DrivenBase {
   std::vector<Leg> legs_;
   std::size_t current_ = 0;
   double in_leg_ = 0, turned_to_ = 0;
-  bool aims_ = true;
+  bool aims_ = true, blocked_ = false;
   double x_, y_, yaw_, speed_ = 0, rate_ = 0;
   Time done_{};
 };

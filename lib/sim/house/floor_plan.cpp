@@ -147,6 +147,7 @@ class Reader {
     space.height = line.positive("height", 2.05);
     const Space &a = plan.spaces[first], &b = plan.spaces[second];
     space.name = a.name + "-" + b.name;
+    space.doorway = true;
     space.wall = line.surface("wall", Surface::wood);
     space.floor = line.surface("floor", a.floor);
     space.ceiling = space.wall;

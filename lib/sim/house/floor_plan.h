@@ -42,6 +42,7 @@ struct Opening {
 // A room, a corridor, or the inside of a doorway.
 struct Space {
   std::string name;
+  bool doorway = false;
   Rectangle area;
   double height = 2.7;
   Surface wall = Surface::plaster, floor = Surface::carpet, ceiling = Surface::panels;

@@ -36,13 +36,25 @@ void Walker::next() {
   in_instruction_ = 0;
 }
 
+// With which it passes a place: slower where its way bends.
+double Walker::corner_speed(const Instruction& to) const {
+  constexpr double kBend = .5, kSlow = .7;  // radians; metres a second
+  const Instruction& next = instructions_[(current_ + 1) % instructions_.size()];
+  if (next.kind != Instruction::go) return kFastest;
+  const double here = std::atan2(to.y - stance_.y, to.x - stance_.x);
+  const double then = std::atan2(next.y - to.y, next.x - to.x);
+  return std::abs(sensing::wrap(then - here)) > kBend ? kSlow : kFastest;
+}
+
 void Walker::go(const Instruction& to) {
   const double x = to.x - stance_.x, y = to.y - stance_.y, away = std::hypot(x, y);
   const double going = std::hypot(way_x_, way_y_);
   const double reached = to.stops ? kNear : std::max(kNear, going * going / (2 * traits_.acceleration));
   if (away <= reached) return next();
   double speed = std::clamp(to.speed, 0., kFastest);
-  if (to.stops) speed = std::min(speed, std::sqrt(2 * traits_.acceleration * (away - kNear / 2)));
+  const double end = to.stops ? 0 : corner_speed(to);
+  if (end < speed)
+    speed = std::min(speed, std::sqrt(end * end + 2 * traits_.acceleration * std::max(0., away - kNear / 2)));
   const double more_x = x / away * speed - way_x_, more_y = y / away * speed - way_y_;
   const double more = std::hypot(more_x, more_y), most = traits_.acceleration * kStep;
   const double share = more > most ? most / more : 1;

@@ -40,11 +40,15 @@ class Walker {
 
   // In steps of 2 ms.
   void elapse(Time now);
+  // Steps aside by so many metres, and goes on from there.
+  void shift(double x, double y) { stance_.x += x, stance_.y += y; }
+  const Instruction& now() const { return instructions_[current_]; }
   const Stance& stance() const { return stance_; }
   double height() const { return traits_.height; }
 
  private:
   void step();
+  double corner_speed(const Instruction& to) const;
   void go(const Instruction& to);
   void next();
 

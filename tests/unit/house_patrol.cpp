@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A robot on its patrol through the office that comes along.
+#include "sim/house/house.h"
+
+#include <check.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+
+#include "support/suite.h"
+
+using namespace cerberus::sim;
+using namespace std::chrono_literals;
+using cerberus::sensing::degrees;
+using cerberus::sensing::radians;
+
+namespace {
+
+FloorPlan plan_of(const std::string& text) {
+  auto result = read_floor_plan(text);
+  if (const auto* wrong = std::get_if<std::string>(&result)) ck_abort_msg("%s", wrong->c_str());
+  return std::get<FloorPlan>(std::move(result));
+}
+
+FloorPlan office() {
+  std::ifstream in(std::string(std::getenv("CERBERUS_SOURCE")) + "/pipelines/office.plan");
+  return plan_of(std::string{std::istreambuf_iterator<char>(in), {}});
+}
+
+std::unique_ptr<House> built(FloorPlan plan, const HouseSettings& settings) {
+  auto result = House::build(std::move(plan), settings);
+  if (const auto* wrong = std::get_if<std::string>(&result)) ck_abort_msg("%s", wrong->c_str());
+  return std::get<std::unique_ptr<House>>(std::move(result));
+}
+
+std::vector<Route> routes(const char* text, Mover mover) {
+  return std::get<std::vector<Route>>(read_routes(text, mover));
+}
+
+const auto kAhead = [](Time) { return Gaze{}; };
+
+// A small picture, because none is looked at.
+HouseSettings small() {
+  HouseSettings settings;
+  settings.lens.width = 32, settings.lens.height = 24;
+  settings.exposure = 0ms;
+  return settings;
+}
+
+constexpr char kHall[] = "room hall 0 0 12 10\nlamp 5 5\n";
+
+// One person who crosses before a robot that stands at (1, 5) and looks along x.
+HouseSettings crossing(const char* walk) {
+  HouseSettings settings = small();
+  settings.path = routes("at 1 5; wait 1", Mover::robot);
+  settings.walks = routes(walk, Mover::person);
+  settings.pir_bearings = {0, radians(-120), radians(120)};
+  return settings;
+}
+
+}  // namespace
+
+START_TEST(a_robot_without_a_path_patrols_every_room_and_meets_no_wall) {
+  HouseSettings settings = small();
+  settings.people = 0;
+  const FloorPlan plan = office();
+  const Ways ways(plan, .25);
+  const auto house = built(plan, settings);
+  std::set<std::string> visited;
+  std::vector<std::uint8_t> picture;
+  double fastest = 0, turns = 0;
+  for (Time t{}; t < 200s; t += 100ms) {
+    house->take(t, kAhead, picture);
+    const DrivenBase& base = house->base();
+    ck_assert(ways.free({base.x(), base.y()}));
+    visited.insert(plan.spaces[plan.space_at(base.x(), base.y())].name);
+    fastest = std::max(fastest, base.speed()), turns = std::max(turns, std::abs(base.yaw_rate()));
+  }
+  for (const char* name : {"hall", "office", "lab", "lounge"})
+    ck_assert_msg(visited.contains(name), "%s", name);
+  ck_assert_double_eq_tol(fastest, .6, 1e-6);
+  ck_assert_double_eq_tol(degrees(turns), 45, 1e-3);
+}
+END_TEST
+
+START_TEST(people_go_from_room_to_room_and_keep_off_walls_and_each_other) {
+  const FloorPlan plan = office();
+  for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    HouseSettings settings = small();
+    settings.seed = seed;
+    settings.people = 4;
+    const auto house = built(plan, settings);
+    std::vector<std::uint8_t> picture;
+    std::vector<std::set<int>> rooms(4);
+    for (Time t{}; t < 90s; t += 100ms) {
+      house->take(t, kAhead, picture);
+      const auto at = [&](int i) {
+        const PersonTruth& person = house->people()[i];
+        const double angle = house->base().yaw() + person.bearing;
+        return Spot{house->base().x() + person.distance * std::cos(angle),
+                    house->base().y() + person.distance * std::sin(angle)};
+      };
+      for (int i = 0; i < 4; ++i) {
+        const Spot here = at(i);
+        // Half of a body's depth from whatever stands.
+        for (int k = 0; k < 8; ++k) {
+          const double x = here.x + .15 * std::cos(k * radians(45)),
+                       y = here.y + .15 * std::sin(k * radians(45));
+          ck_assert_msg(plan.space_at(x, y) >= 0, "seed %u, person %d at %.2f %.2f", seed, i, here.x, here.y);
+          for (const Furniture& box : plan.boxes) ck_assert(!box.area.contains(x, y));
+        }
+        rooms[i].insert(plan.space_at(here.x, here.y));
+        for (int other = 0; other < i; ++other)
+          ck_assert_double_gt(std::hypot(at(other).x - here.x, at(other).y - here.y), .25);
+      }
+    }
+    ck_assert(std::ranges::any_of(rooms, [](const auto& visited) { return visited.size() >= 3; }));
+  }
+}
+END_TEST
+
+START_TEST(one_seed_gives_the_same_pictures_and_another_gives_others) {
+  const auto pictures = [](std::uint32_t seed) {
+    HouseSettings settings;
+    settings.seed = seed;
+    settings.lens.width = 64, settings.lens.height = 48;
+    settings.pir_bearings = {0};
+    settings.shake = radians(.2);
+    const auto house = built(office(), settings);
+    std::vector<std::uint8_t> all, one;
+    for (Time t{}; t < 4s; t += 33ms) {
+      house->take(
+          t, [](Time at) { return Gaze{radians(10) * std::sin(cerberus::motion::seconds(at)), 0}; }, one);
+      all.insert(all.end(), one.begin(), one.end());
+    }
+    return all;
+  };
+  const auto first = pictures(3);
+  ck_assert(first == pictures(3));
+  ck_assert(first != pictures(4));
+}
+END_TEST
+
+// Three metres before the camera, at 1 m/s.
+START_TEST(the_truth_is_where_the_walk_leads) {
+  const auto house = built(plan_of(kHall), crossing("at 4 2 90; go 4 8 1"));
+  std::vector<std::uint8_t> picture;
+  double before = -1;
+  for (Time t{}; t <= 5s; t += 100ms) {
+    house->take(t, kAhead, picture);
+    const PersonTruth& person = house->people().at(0);
+    ck_assert_double_ge(person.bearing, before);
+    before = person.bearing;
+    ck_assert_double_eq_tol(person.distance * std::cos(person.bearing), 3, .02);
+    if (t > 2s && t < 5s) ck_assert_double_eq_tol(person.speed, 1, .01);
+  }
+  ck_assert_double_gt(degrees(before), 25);
+}
+END_TEST
+
+START_TEST(a_gaze_to_the_right_moves_the_person_to_the_left) {
+  HouseSettings settings = crossing("at 4 5; wait 9");
+  settings.lens.width = 320, settings.lens.height = 240;
+  const auto house = built(plan_of(kHall), settings);
+  std::vector<std::uint8_t> picture;
+  house->take(0ms, [](Time) { return Gaze{radians(20), 0}; }, picture);
+  const PersonTruth person = house->people().at(0);
+  ck_assert_double_eq_tol(degrees(person.bearing), -20, 1e-6);
+  ck_assert_double_eq_tol(person.left + person.width / 2, 160 - 277.1 * std::tan(radians(20)), 3);
+}
+END_TEST
+
+START_TEST(a_sensor_is_triggered_by_who_crosses_its_field_and_not_through_a_wall) {
+  const auto first_edge = [](const char* plan, const char* walk) {
+    const auto house = built(plan_of(plan), crossing(walk));
+    std::vector<std::uint8_t> picture;
+    for (Time t{}; t <= 6s; t += 50ms) {
+      house->take(t, kAhead, picture);
+      for (const PirEdge& edge : house->pir_edges()) {
+        ck_assert(edge.high && edge.time <= t && edge.time > t - 50ms);
+        return edge.sensor;
+      }
+    }
+    return -1;
+  };
+  ck_assert_int_eq(first_edge(kHall, "at 5 3 90; go 5 7 1"), 0);
+  ck_assert_int_eq(first_edge(kHall, "at 5 5; wait 9"), -1);
+  ck_assert_int_eq(first_edge("room hall 0 0 3 10\nroom next 3.2 0 8 10\n", "at 5 3 90; go 5 7 1"), -1);
+}
+END_TEST
+
+START_TEST(a_robot_waits_for_a_person_in_its_way) {
+  HouseSettings settings = small();
+  settings.path = routes("at 1 5; go 9 5", Mover::robot);
+  settings.walks = routes("at 4 5; wait 60", Mover::person);
+  const auto house = built(plan_of(kHall), settings);
+  std::vector<std::uint8_t> picture;
+  double nearest = 9;
+  for (Time t{}; t < 8s; t += 100ms) {
+    house->take(t, kAhead, picture);
+    nearest = std::min(nearest, house->people()[0].distance);
+  }
+  ck_assert_double_gt(nearest, .4);
+}
+END_TEST
+
+START_TEST(settings_that_cannot_be_are_named) {
+  HouseSettings settings = small();
+  settings.path = routes("at 1 5; go 40 5", Mover::robot);
+  const auto refused = House::build(plan_of(kHall), settings);
+  ck_assert_str_eq(std::get<std::string>(refused).c_str(),
+                   "the robot's path: no free way leads from 1 5 to 40 5");
+  settings.path.clear();
+  settings.walks = routes("at 0 0.05; wait 1", Mover::person);
+  const auto walled = House::build(plan_of(kHall), settings);
+  ck_assert_str_eq(std::get<std::string>(walled).c_str(), "a person's walk: 0 0.05 is not free");
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "house_patrol", {a_robot_without_a_path_patrols_every_room_and_meets_no_wall,
+                       people_go_from_room_to_room_and_keep_off_walls_and_each_other,
+                       one_seed_gives_the_same_pictures_and_another_gives_others,
+                       the_truth_is_where_the_walk_leads, a_gaze_to_the_right_moves_the_person_to_the_left,
+                       a_sensor_is_triggered_by_who_crosses_its_field_and_not_through_a_wall,
+                       a_robot_waits_for_a_person_in_its_way, settings_that_cannot_be_are_named});
+}
