@@ -39,7 +39,7 @@ typedef enum { CERBERUS_BASE_ESTIMATED, CERBERUS_BASE_REPORTED } CerberusBaseSou
  *   where it is not known
  * @source: where @yaw_rate comes from
  * @valid_from: in events the running time from which it holds; on buffers %GST_CLOCK_TIME_NONE
- * @speed: in events how fast the body drives, metres a second, positive ahead, NaN where it is not known; on buffers NaN
+ * @speed: how fast the body drives, metres a second, positive ahead, NaN where it is not known, as on most buffers
  *
  * How the body that carries head and sensors moves. An unknown motion is not attached.
  */

@@ -13,4 +13,5 @@
 #include <cerberus/pose.h>
 #include <cerberus/region.h>
 #include <cerberus/stamp.h>
+#include <cerberus/truth.h>
 #include <cerberus/version.h>

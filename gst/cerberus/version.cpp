@@ -16,4 +16,5 @@ void cerberus_init(void) {
   cerberus_buffer_peek_base(buffer);
   cerberus_buffer_peek_fusion(buffer);
   cerberus_buffer_peek_stamp(buffer);
+  cerberus_buffer_peek_truth(buffer);
 }

@@ -58,7 +58,7 @@ SensorSnapshot Inputs::at(Time time, Time sensor_time, const std::string& head, 
   } else if (seen) {
     snapshot.base_degrees = seen->yaw_rate;
   }
-  snapshot.base_speed = base_speeds_.at(time).value_or(fusion::kUnknown);
+  snapshot.base_speed = base_speeds_.at(time).value_or(seen ? seen->speed : fusion::kUnknown);
   poses_.forget_before(taken_);
   base_rates_.forget_before(time);
   base_speeds_.forget_before(time);

@@ -124,6 +124,7 @@
 
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/follow_query.hpp"
+#include "cerberus/private/head_query.hpp"
 #include "control/frame_order.h"
 #include "head_session.hpp"
 #include "shared/camera_mount.hpp"
@@ -195,6 +196,12 @@ gboolean cerberus_pan_tilt_sink_set_caps(GstBaseSink* sink, GstCaps* caps) {
 gboolean cerberus_pan_tilt_sink_propose_allocation(GstBaseSink*, GstQuery* query) {
   gst_query_add_allocation_meta(query, GST_VIDEO_META_API_TYPE, nullptr);
   return TRUE;
+}
+
+gboolean cerberus_pan_tilt_sink_query(GstBaseSink* sink, GstQuery* query) {
+  const char* head = cerberus_pan_tilt_sink_self(sink)->priv->session.head.load();
+  if (asks_for_head(query, head ? head : "")) return TRUE;
+  return GST_BASE_SINK_CLASS(cerberus_pan_tilt_sink_parent_class())->query(sink, query);
 }
 
 // Whether the stream is live decides what drives the head's time; known upstream when the stream begins, mostly. Without
@@ -541,6 +548,7 @@ void cerberus_pan_tilt_sink_class_init(CerberusPanTiltSinkClass* klass) {
   sink->unlock_stop = cerberus_pan_tilt_sink_unlock_stop;
   sink->set_caps = cerberus_pan_tilt_sink_set_caps;
   sink->propose_allocation = cerberus_pan_tilt_sink_propose_allocation;
+  sink->query = cerberus_pan_tilt_sink_query;
   sink->event = cerberus_pan_tilt_sink_event;
   sink->render = cerberus_pan_tilt_sink_render;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "drivers/helper/option_words.h"
+#include "shared/pir_caps.hpp"
 #include "text/numbers.h"
 
 namespace cerberus::plugin {
@@ -151,21 +152,7 @@ void apply_preset(PirSettings& settings, const PirChosen& chosen) {
 }
 
 std::string pir_info(const PirSettings& settings, CerberusPirInfo& info) {
-  cerberus_pir_info_init(&info);
-  info.field_of_view = settings.field_of_view;
-  const auto words = comma_list(settings.bearings);
-  if (words.empty() || words.size() > CERBERUS_PIR_MAX_SENSORS)
-    return "bearings=\"" + settings.bearings + "\" must name 1 to 16 directions";
-  info.sensors = static_cast<guint>(words.size());
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    gchar* end = nullptr;
-    const double bearing = g_ascii_strtod(words[i].c_str(), &end);
-    if (words[i].empty() || *end || !(std::abs(bearing) <= 360))
-      return "bearings=\"" + settings.bearings + "\": \"" + words[i] + "\" is no direction in degrees";
-    info.bearings[i] =
-        bearing >= -180 && bearing < 180 ? bearing : bearing - 360 * std::floor((bearing + 180) / 360);
-  }
-  return "";
+  return pir_info(settings.bearings, settings.field_of_view, info);
 }
 
 drivers::SensorSetup sensor_setup(const PirSettings& settings, guint sensors) {

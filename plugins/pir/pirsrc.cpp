@@ -72,8 +72,8 @@
 #include "device_wait.hpp"
 #include "drivers/sensor/sensor_array.h"
 #include "pir_settings.hpp"
-#include "reports.hpp"
 #include "sensing/base_rates.h"
+#include "shared/pir_reports.hpp"
 #include "shared/stamps.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(pirsrc_debug);
@@ -351,7 +351,7 @@ GstFlowReturn next_buffer(CerberusPirSrc* self, GstBuffer** buffer) {
         news.places[static_cast<std::size_t>(i)] = priv.sensors.place(i);
       }
       guard.unlock();
-      *buffer = publish(GST_BASE_SRC(self), news);
+      *buffer = publish(GST_ELEMENT(self), GST_BASE_SRC(self)->segment, news);
       return GST_FLOW_OK;
     }
     const Time due = priv.sensors.due();

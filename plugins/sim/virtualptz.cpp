@@ -60,6 +60,7 @@
 #include <optional>
 
 #include "cerberus/private/element.hpp"
+#include "head_wait.hpp"
 #include "motion/frame_times.h"
 #include "motion/pose_feed.h"
 #include "shared/complaint.hpp"
@@ -235,55 +236,6 @@ void attach_base(GstBuffer* in, GstBuffer* out) {
   cerberus_buffer_set_base(out, &base);
 }
 
-// When no pose came for half the time-out, at most for so long,
-// the last frame may have been lost on its way to the head.
-constexpr Time kLost = std::chrono::milliseconds(500);
-
-// Announces to the head that no frame is taken from running time `begin` until `in`.
-void push_gap(GstBaseTransform* trans, std::optional<Time> begin, GstBuffer* in) {
-  const GstClockTime until = GST_BUFFER_PTS(in);
-  if (!begin || !GST_CLOCK_TIME_IS_VALID(until)) return;
-  const GstSegment& segment = trans->segment;
-  guint64 from = gst_segment_position_from_running_time(&segment, GST_FORMAT_TIME, clock_time(*begin));
-  if (!GST_CLOCK_TIME_IS_VALID(from)) from = segment.start;  // it was in the segment before
-  if (from < until)
-    gst_pad_push_event(GST_BASE_TRANSFORM_SRC_PAD(trans), gst_event_new_gap(from, until - from));
-}
-
-// Until the head's way is known up to `time`, when `in` was taken.
-GstFlowReturn wait_for_head(GstBaseTransform* trans, Private& self, GstBuffer* in, Time time) {
-  const WindowSettings& s = self.state.settings;
-  push_gap(trans, self.state.times.gap_begin(time), in);
-  const Time patience = time_of(s.lockstep_timeout);
-  const Time least(1);  // none at all would be for ever
-  const Time lost_after = s.lockstep_timeout > 0 ? std::clamp(patience / 2, least, kLost) : kLost;
-  using motion::PoseFeed;
-  PoseFeed::Answer answer = self.feed.wait(time, lost_after);
-  if (answer == PoseFeed::Answer::silent) {
-    // A head that has had the last frame drops this gap as old, however late it comes to it: the result stays the same.
-    push_gap(trans, self.state.times.last(), in);
-    answer = self.feed.wait(time, s.lockstep_timeout > 0 ? std::max(patience - lost_after, least) : patience);
-  }
-  switch (answer) {
-    case PoseFeed::Answer::known:
-      return GST_FLOW_OK;
-    case PoseFeed::Answer::interrupted:
-      return GST_FLOW_FLUSHING;
-    case PoseFeed::Answer::silent:
-      break;
-  }
-  const std::string at = text::rounded(motion::seconds(time), 3).string();
-  const std::string waited = text::significant(motion::seconds(patience), 3).string();
-  CERBERUS_ELEMENT_ERROR(
-      trans, RESOURCE, READ,
-      ("The head \"%s\" published no pose for the frame at %s s: none came for %s s. Is there "
-       "a pantiltsink of "
-       "that name downstream? Without one, set lockstep=off.",
-       s.head.c_str(), at.c_str(), waited.c_str()),
-      ("running time %" GST_TIME_FORMAT, GST_TIME_ARGS(clock_time(time))));
-  return GST_FLOW_ERROR;
-}
-
 // A step, play and noise are no reason to speak.
 constexpr double kBeyond = 1;  // degrees
 
@@ -311,7 +263,12 @@ GstFlowReturn make_frame(GstBaseTransform* trans, GstBuffer* in, GstBuffer* out)
   const Time time =
       state.times.taken(GST_CLOCK_TIME_IS_VALID(running) ? std::optional(time_of(running)) : std::nullopt);
   if (wants_lockstep(trans, state))
-    if (const GstFlowReturn flow = wait_for_head(trans, self, in, time); flow != GST_FLOW_OK) return flow;
+    if (const GstFlowReturn flow =
+            wait_for_head({GST_ELEMENT(trans), GST_BASE_TRANSFORM_SRC_PAD(trans), trans->segment, self.feed,
+                           state.times, state.settings.head, state.settings.lockstep_timeout},
+                          GST_BUFFER_PTS(in), time);
+        flow != GST_FLOW_OK)
+      return flow;
   state.times.add(time, running_length(GST_BUFFER_DURATION(in), state.view.picture(), trans->segment));
   const motion::Pose pose = self.feed.at(time);
   state.view.look_through(pose.field_of_view);

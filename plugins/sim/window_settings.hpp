@@ -5,11 +5,10 @@
 #include <span>
 #include <string>
 
+#include "head_wait.hpp"
 #include "shared/properties.hpp"
 
 namespace cerberus::plugin {
-
-enum Lockstep { LOCKSTEP_AUTO, LOCKSTEP_ON, LOCKSTEP_OFF };
 
 struct WindowSettings {
   int width = 0, height = 0;

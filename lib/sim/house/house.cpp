@@ -32,8 +32,10 @@ std::string spot_text(const Spot& spot) {
   const auto text = [](double value) {
     const long centimetres = std::lround(100 * value);
     std::string word = std::to_string(std::abs(centimetres) / 100);
-    if (const long rest = std::abs(centimetres) % 100)
-      word += (rest < 10 ? ".0" : ".") + std::to_string(rest);
+    if (long rest = std::abs(centimetres) % 100) {
+      word += rest < 10 ? ".0" : ".";
+      word += std::to_string(rest % 10 == 0 ? rest / 10 : rest);
+    }
     return (centimetres < 0 ? "-" : "") + word;
   };
   return text(spot.x) + " " + text(spot.y);
@@ -213,17 +215,17 @@ std::variant<std::unique_ptr<House>, std::string> House::build(FloorPlan plan,
                               clothes_of(scramble(settings.seed, std::uint32_t(i), 13))});
   for (const Person& person : house->people_)
     house->subjects_.push_back({&person.walker.stance(), &person.clothes, person.walker.height()});
-  // A radiator, a window or a screen a room: as in lib/sim/patrols.h.
-  for (const Space& space : house->camera_.plan().spaces) {
-    if (space.doorway) continue;
-    const Rectangle& area = space.area;
-    const double along = dice.between(.2, .8), contrast = dice.between(8, 25);
-    const double x = area.left + along * (area.right - area.left),
-                 y = area.top + along * (area.bottom - area.top);
-    const Spot places[] = {
-        {area.left + .1, y}, {x, area.top + .1}, {area.right - .1, y}, {x, area.bottom - .1}};
-    house->things_.push_back({places[dice.below(4)], 1, dice.chance(.5) ? contrast : -contrast});
-  }
+  // Radiators, windows and screens, two a room: as in lib/sim/patrols.h.
+  for (const Space& space : house->camera_.plan().spaces)
+    for (int i = 0; i < 2 && !space.doorway; ++i) {
+      const Rectangle& area = space.area;
+      const double along = dice.between(.2, .8), contrast = dice.between(8, 25);
+      const double x = area.left + along * (area.right - area.left),
+                   y = area.top + along * (area.bottom - area.top);
+      const Spot places[] = {
+          {area.left + .1, y}, {x, area.top + .1}, {area.right - .1, y}, {x, area.bottom - .1}};
+      house->things_.push_back({places[dice.below(4)], 1, dice.chance(.5) ? contrast : -contrast});
+    }
   return house;
 }
 

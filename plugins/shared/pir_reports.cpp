@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "reports.hpp"
+#include "pir_reports.hpp"
 
 #include <algorithm>
 #include <cerberus/private/messages.hpp>
@@ -49,8 +49,7 @@ void report_outage(GstElement* element, const std::string& outage) {
     CERBERUS_ELEMENT_WARNING(element, RESOURCE, READ, ("%s.", outage.c_str()), (nullptr));
 }
 
-GstBuffer* publish(GstBaseSrc* source, const News& news) {
-  GstElement* element = GST_ELEMENT(source);
+GstBuffer* publish(GstElement* element, const GstSegment& segment, const News& news) {
   const drivers::SensorReading& reading = news.reading;
   const guint count = news.info.sensors;
   CerberusPir pir;
@@ -65,8 +64,8 @@ GstBuffer* publish(GstBaseSrc* source, const News& news) {
   if (news.outage) report_outage(element, *news.outage);
   if (reading.changed) {
     CerberusStamp stamp = news.stamp;
-    stamp.running_time = gst_segment_to_running_time(&source->segment, GST_FORMAT_TIME, news.time);
-    gst_element_post_message(element, cerberus_message_new_pir(GST_OBJECT(source), &stamp, &pir));
+    stamp.running_time = gst_segment_to_running_time(&segment, GST_FORMAT_TIME, news.time);
+    gst_element_post_message(element, cerberus_message_new_pir(GST_OBJECT(element), &stamp, &pir));
   }
   const gsize size = cerberus_pir_info_buffer_size(&news.info);
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, size, nullptr);

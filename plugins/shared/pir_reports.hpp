@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cerberus/pir.h>
-#include <gst/base/gstbasesrc.h>
+#include <gst/gst.h>
 
 #include <array>
 #include <optional>
@@ -32,6 +32,6 @@ struct News {
 };
 
 // Posts it, and makes a buffer of it.
-GstBuffer* publish(GstBaseSrc* source, const News& news);
+GstBuffer* publish(GstElement* element, const GstSegment& segment, const News& news);
 
 }  // namespace cerberus::plugin
