@@ -143,6 +143,17 @@ class ThroughAPipeline(unittest.TestCase):
                                                 Cerberus.buffer_add_region(buffer, region(id=1))))))
         self.assertEqual(seen, [([], False)] * 3)
 
+    def test_the_truth_of_a_simulated_frame(self):
+        line = ('patrolsimsrc num-buffers=2 path="at 4.5 8.5; wait 1" walks="at 8 8.5; wait 9 | at 8 10; wait 9" ! '
+                "appsink name=sink")
+        for truth in map(Cerberus.buffer_get_truth, frames(line)):
+            self.assertEqual((truth.n_persons, truth.base_x), (2, 4.5))
+            first, second = truth.get_person(0), truth.get_person(1)
+            self.assertEqual((first.id, second.id), (1, 2))
+            self.assertAlmostEqual(first.distance, 3.5)
+            self.assertAlmostEqual(second.bearing, math.degrees(math.atan2(1.5, 3.5)))
+            self.assertIsNone(truth.get_person(2))
+
     def test_an_application_annotates_and_reads(self):
         pipeline = Gst.parse_launch("appsrc name=source format=time "
                                     "caps=video/x-raw,format=GRAY8,width=64,height=48,framerate=25/1 ! queue ! "
