@@ -42,7 +42,7 @@
  *     pantiltsink driver=simulated horizontal-fov=60 robot.pir ! fusion.
  * gst-launch-1.0 patrolsimsrc num-buffers=30 people=0 path="at 2 5.3; turn 90; turn -90" ! \
  *     video/x-raw,width=640,height=480 ! fakesink
- * gst-launch-1.0 patrolsimsrc num-buffers=30 path="at 3.5 9; wait 1" walks="at 7 7.5 90; go 7 12 1" ! fakesink
+ * gst-launch-1.0 patrolsimsrc num-buffers=30 path="at 4.5 8.5; wait 1" walks="at 8 7 90; go 8 11 1" ! fakesink
  * ]|
  *
  * Since: 0.3

@@ -72,7 +72,7 @@ def stand_in(line):
         if word in ('v4l2src', 'libcamerasrc', 'autovideosrc'):
             source = 'camera'
             result += shlex.split(BALL.replace('videotestsrc', 'videotestsrc is-live=true'))
-        elif word in ('filesrc', 'uridecodebin', 'videotestsrc', 'udpsrc', 'playbin'):
+        elif word in ('filesrc', 'uridecodebin', 'videotestsrc', 'patrolsimsrc', 'udpsrc', 'playbin'):
             source = word
             result.append(word)
         elif source == 'camera' and word.startswith(('device=', 'camera-name=')):
@@ -86,7 +86,8 @@ def stand_in(line):
         elif word.startswith('sync=') and result[-1] == 'fakesink':
             continue
         else:
-            if word == '!' and source == 'videotestsrc' and not any(each.startswith('num-buffers') for each in result):
+            endless = source in ('videotestsrc', 'patrolsimsrc')
+            if word == '!' and endless and not any(each.startswith('num-buffers') for each in result):
                 result.append('num-buffers=30')
             if word == '!':
                 source = ''
