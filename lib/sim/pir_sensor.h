@@ -2,21 +2,30 @@
 // A PIR module: its lens cuts the field of view into zones, and what is warmer or colder than its surroundings triggers
 // it when it crosses a border of zones. That it moves or the module turns makes no difference. Radians, seconds, kelvin.
 //
-//   strength of a crossing = |contrast| min(1, width / zone) g(rate / zone)
+//   strength of a crossing = |contrast| min(1, width / zone) g(rate / zone), of what a reach of the module holds
 //   g(f) = band pass of first order, low .. high Hz
 //   output: high `response` after a crossing of at least `threshold`, for `hold` from the last one; then nothing
 //   triggers for `block`
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "motion/head_limits.h"
+#include "sensing/pir_model.h"
 
 namespace cerberus::sim {
 
 using motion::Time;
+
+// As far as a module sees what begins below a height above the floor. Metres.
+struct PirReach {
+  double distance, below;
+};
+// Zones A and C of the paper's Figure 1.
+inline constexpr std::array<PirReach, 2> kPaperReach{{{12, 1.5}, {3, 2.5}}};
 
 struct PirTraits {
   double field = sensing::radians(110);
@@ -26,14 +35,22 @@ struct PirTraits {
   double response = .1;       // seconds
   double hold = 2.5;          // seconds, extended by each crossing
   double block = .2;          // seconds after the output fell
+  std::array<PirReach, 2> reach = kPaperReach;
 };
 
 // Something as a sensor sees it. A sensor compares things of the same place in the list.
 struct Warmth {
-  double bearing = 0;   // from the body
-  double width = 0;     // 0: it is not there
-  double contrast = 0;  // kelvin
+  double bearing = 0;            // from the body
+  double width = 0;              // 0: it is not there
+  double contrast = 0;           // kelvin
+  double distance = 0, low = 0;  // metres: of its lower end above the floor
 };
+
+// A module that finds people up to `range` metres away, in segments of about 8 degrees. module: its hold and block times,
+// where they are known; nullptr: none in particular.
+PirTraits pir_traits(const sensing::PirPreset* module, double field, double range);
+// The threshold with which a module just finds a person (.48 m, 6 K) who crosses at 1 m/s, `range` metres away.
+double threshold_for(const PirTraits& traits, double range);
 
 class PirSensor {
  public:

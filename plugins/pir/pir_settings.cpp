@@ -6,6 +6,7 @@
 
 #include "drivers/helper/option_words.h"
 #include "shared/pir_caps.hpp"
+#include "shared/pir_presets.hpp"
 #include "text/numbers.h"
 
 namespace cerberus::plugin {
@@ -15,16 +16,7 @@ using drivers::comma_list;
 namespace {
 
 GType preset_type() {
-  static const auto values = [] {
-    std::vector<GEnumValue> list{{0, "No module in particular: what the properties say", "none"}};
-    for (const auto& preset : sensing::pir_presets()) {
-      const gchar* name = g_intern_string(std::string(preset.name).c_str());
-      list.push_back({static_cast<gint>(list.size()), name, name});
-    }
-    list.push_back({0, nullptr, nullptr});
-    return list;
-  }();
-  static const GType type = g_enum_register_static("CerberusPirPreset", values.data());
+  static const GType type = register_pir_presets("CerberusPirPreset");
   return type;
 }
 
@@ -138,10 +130,8 @@ bool is_preset_property(guint id) {
 }
 
 void apply_preset(PirSettings& settings, const PirChosen& chosen) {
-  const auto all = sensing::pir_presets();
   const PirSettings defaults;
-  const auto number = static_cast<std::size_t>(settings.preset);
-  const sensing::PirPreset* preset = number > 0 && number <= all.size() ? &all[number - 1] : nullptr;
+  const sensing::PirPreset* preset = pir_preset(settings.preset);
   if (!chosen[id_of("active-low")])
     settings.active_low = preset ? preset->options.active_low : defaults.active_low;
   if (!chosen[id_of("warm-up")])

@@ -146,9 +146,10 @@ bool wants_lockstep(CerberusPatrolCamera* self, State& state) {
 
 void publish_edges(Private& self, Time time) {
   PirStream::Step step;
+  const bool active_low = pir_options(self.state.settings).active_low;
   step.until = time;
   for (const sim::PirEdge& edge : self.state.house->pir_edges())
-    step.edges.push_back({edge.time, edge.sensor, edge.high});
+    step.edges.push_back({edge.time, edge.sensor, edge.high != active_low});
   step.motion = {self.state.house->base().yaw_rate(), self.state.house->base().speed()};
   self.pir->advance(std::move(step));
 }
@@ -238,7 +239,8 @@ bool begin(CerberusPatrolCamera* self) {
   start.tilt.position = radians(priv.state.settings.start_tilt);
   priv.feed.begin(start);
   constexpr Time kHeartbeat = std::chrono::milliseconds(100);  // as pirsrc's
-  priv.pir->begin(priv.state.sensors, {}, kHeartbeat, priv.state.settings.camera_name);
+  priv.pir->begin(priv.state.sensors, pir_options(priv.state.settings), kHeartbeat,
+                  priv.state.settings.camera_name);
   return true;
 }
 

@@ -6,6 +6,8 @@
 #include "office.h"
 #include "shared/clock_times.hpp"
 #include "shared/pir_caps.hpp"
+#include "shared/pir_presets.hpp"
+#include "text/numbers.h"
 
 namespace cerberus::plugin {
 namespace {
@@ -17,6 +19,11 @@ GType lockstep_type() {
       {LOCKSTEP_OFF, "No frame waits", "off"},
       {0, nullptr, nullptr}};
   static const GType type = g_enum_register_static("CerberusPatrolSimLockstep", values);
+  return type;
+}
+
+GType preset_type() {
+  static const GType type = register_pir_presets("CerberusPatrolSimPirPreset");
   return type;
 }
 
@@ -65,8 +72,14 @@ const Property<PatrolSettings> kProperties[] = {
         "pir-bearings", &S::pir_bearings,
         "Where each PIR sensor looks: degrees, separated by commas, 0 ahead, positive to the right. As many "
         "as there are sensors, 1 to 16"),
-    property("pir-field-of-view", &S::pir_field_of_view, 10, 180,
-             "Angle in degrees that each PIR sensor sees"),
+    property("pir-preset", &S::pir_preset, preset_type,
+             "The module of the PIR sensors: its range, field of view, warm-up, hold and block times"),
+    property("pir-field-of-view", &S::pir_field_of_view, 0, 180,
+             "Angle in degrees that each PIR sensor sees; 0 = the preset's, 120 without one"),
+    property(
+        "pir-range", &S::pir_range, 0, 50,
+        "How far each PIR sensor finds a person who crosses at 1 m/s, metres; 0 = the preset's, 12 without "
+        "one. What begins higher than 1.5 m above the floor is seen within 3 m only"),
     property("camera-name", &S::camera_name,
              "Name of the camera, for the messages of the sensors; empty = none"),
 };
@@ -88,7 +101,15 @@ std::span<const Property<PatrolSettings>> patrol_properties() {
 }
 
 std::string pir_info(const PatrolSettings& settings, CerberusPirInfo& info) {
-  return pir_info(settings.pir_bearings, settings.pir_field_of_view, info);
+  const sensing::PirPreset* preset = pir_preset(settings.pir_preset);
+  double field = settings.pir_field_of_view;
+  if (!(field > 0)) field = preset ? text::round_to(sensing::degrees(preset->field_of_view), 6) : 120;
+  return pir_info(settings.pir_bearings, field, info);
+}
+
+sensing::PirOptions pir_options(const PatrolSettings& settings) {
+  const sensing::PirPreset* preset = pir_preset(settings.pir_preset);
+  return preset ? preset->options : sensing::PirOptions{};
 }
 
 std::variant<std::unique_ptr<sim::House>, std::string> build_house(const PatrolSettings& settings,
@@ -119,7 +140,10 @@ std::variant<std::unique_ptr<sim::House>, std::string> build_house(const PatrolS
   house.yaw_rate = sensing::radians(settings.yaw_rate);
   house.shake = sensing::radians(settings.shake);
   house.people = settings.people;
-  house.pir.field = sensing::radians(sensors.field_of_view);
+  const sensing::PirPreset* preset = pir_preset(settings.pir_preset);
+  double range = settings.pir_range;
+  if (!(range > 0)) range = preset ? preset->range : sim::kPaperReach[0].distance;
+  house.pir = sim::pir_traits(preset, sensing::radians(sensors.field_of_view), range);
   for (guint i = 0; i < sensors.sensors; ++i)
     house.pir_bearings.push_back(sensing::radians(sensors.bearings[i]));
   auto built = sim::House::build(std::get<sim::FloorPlan>(std::move(plan)), house);

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "head_wait.hpp"
+#include "sensing/pir_model.h"
 #include "shared/properties.hpp"
 #include "sim/house/house.h"
 
@@ -39,7 +40,8 @@ struct PatrolSettings {
   int lockstep = LOCKSTEP_AUTO;
   guint64 lockstep_timeout = 10 * GST_SECOND;
   std::string pir_bearings = "0,-120,120";
-  double pir_field_of_view = 120;
+  int pir_preset = 0;                           // 0: none, else 1 + its place in sensing::pir_presets()
+  double pir_field_of_view = 0, pir_range = 0;  // 0: the preset's
   std::string camera_name;
 };
 
@@ -47,6 +49,8 @@ std::span<const Property<PatrolSettings>> patrol_properties();
 
 // What the stream of PIR readings says of its sensors; else an error for the user.
 std::string pir_info(const PatrolSettings& settings, CerberusPirInfo& info);
+// What makes readings of the sensors' lines.
+sensing::PirOptions pir_options(const PatrolSettings& settings);
 // The house for pictures of a size; else an error for the user.
 std::variant<std::unique_ptr<sim::House>, std::string> build_house(const PatrolSettings& settings,
                                                                    const CerberusPirInfo& sensors, int width,

@@ -30,7 +30,8 @@
  * PIR readings are those of pirsrc: `application/x-pir` with the sensors' bearings, a buffer at each change and ten a
  * second, and the element message `cerberus-pir` at each change; a GAP event comes with each frame. The sensors see
  * what is warmer or colder than its surroundings cross their zones: people, and, while the robot turns or drives, what
- * stands. They do not see through walls. `pir` has a thread of its own and needs no queue.
+ * stands. They do not see through walls, see people up to `pir-range` away, and what begins higher than 1.5 m within 3 m
+ * only. `pir-preset` gives them the range, field of view, warm-up, hold and block times of a module. `pir` has a thread of its own and needs no queue.
  *
  * `video` is raw progressive I420 of any even size and rate, 320x240 and 30 frames a second unless downstream asks for
  * something else; neither changes while it runs.

@@ -22,10 +22,7 @@ using sensing::Time;
 // Edges as the simulation makes them, in the place of a device.
 class SimulatedSensors : public drivers::Sensor {
  public:
-  drivers::SensorError open(const drivers::SensorSetup& setup) override {
-    for (int i = 0; i < setup.sensors; ++i) edges.push_back({Time{}, i, false});
-    return {};
-  }
+  drivers::SensorError open(const drivers::SensorSetup&) override { return {}; }
   bool opens_at_once(const drivers::SensorSetup&) const override { return true; }
   void close() noexcept override {}
   void stop() noexcept override {}
@@ -103,6 +100,7 @@ gboolean PirStream::activate(GstPad* pad, GstObject*, GstPadMode mode, gboolean 
   {
     const std::lock_guard guard(self.lock_);
     self.flushing_ = !active;
+    if (!active) self.begun_ = false;
     self.news_.notify_all();
   }
   if (!active) return gst_pad_stop_task(pad);
@@ -120,6 +118,7 @@ void PirStream::begin(const CerberusPirInfo& info, const sensing::PirOptions& op
                       const std::string& camera_name) {
   const std::lock_guard guard(lock_);
   steps_.clear();
+  begun_ = true;
   ended_ = announced_ = unwanted_ = false;
   until_ = {};
   info_ = info;
@@ -129,12 +128,14 @@ void PirStream::begin(const CerberusPirInfo& info, const sensing::PirOptions& op
   edges_ = &sensors->edges;
   drivers::SensorSetup setup;
   setup.sensors = static_cast<int>(info.sensors);
+  for (int i = 0; i < setup.sensors; ++i) edges_->push_back({Time{}, i, options.active_low});
   sensors_.open(std::move(sensors), setup, options, heartbeat);
+  news_.notify_all();
 }
 
 void PirStream::advance(Step step) {
   const std::lock_guard guard(lock_);
-  steps_.push_back(std::move(step));
+  if (begun_) steps_.push_back(std::move(step));
   news_.notify_all();
 }
 
@@ -147,7 +148,7 @@ void PirStream::end() {
 // One step of the task.
 void PirStream::run() {
   std::unique_lock guard(lock_);
-  news_.wait(guard, [&] { return flushing_ || ended_ || !steps_.empty(); });
+  news_.wait(guard, [&] { return flushing_ || (begun_ && (ended_ || !steps_.empty())); });
   bool goes_on = !flushing_;
   if (goes_on && !steps_.empty()) {
     const Step step = std::move(steps_.front());

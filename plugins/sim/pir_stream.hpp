@@ -53,6 +53,7 @@ class PirStream {
   std::mutex lock_;
   std::condition_variable news_;
   std::deque<Step> steps_;  // to come
+  bool begun_ = false;  // from begin() until the pad is inactive
   bool ended_ = false, flushing_ = true;
 
   // The pad's thread, and begin().

@@ -3,6 +3,7 @@
 #include <glib/gstdio.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -325,6 +326,36 @@ GST_START_TEST(pirfusion_reads_the_sensors_as_it_reads_pirsrc) {
 }
 GST_END_TEST
 
+// The AM312 warms up for 30 s; the SK-11 is active low and warms up for 60 s.
+GST_START_TEST(sensors_are_invalid_while_their_module_warms_up) {
+  for (const auto& [preset, seconds] : {std::pair("am312", 30), std::pair("sk-11", 60)}) {
+    Outcome outcome;
+    run("patrolsimsrc num-buffers=" + std::to_string(seconds * 5 + 20) + " pir-preset=" + preset +
+            " pir-bearings=0 " + kCrosses + " ! video/x-raw,width=32,height=24,framerate=5/1" + kSink,
+        outcome);
+    fail_unless(outcome.readings.size() >= 2);
+    fail_unless_equals_int(outcome.readings[0].sensors[0], 2);
+    fail_unless(outcome.readings[1].sensors[0] < 2);
+    bool detects = false;
+    for (const CerberusPir& pir : outcome.readings) detects = detects || pir.sensors[0] == 1;
+    fail_unless(detects, "%s", preset);
+  }
+}
+GST_END_TEST
+
+// A person who crosses 3.5 m away, at 1 m/s.
+GST_START_TEST(a_module_with_a_short_range_does_not_reach) {
+  for (const auto& [range, expected] : {std::pair("2", false), std::pair("5", true)}) {
+    Outcome outcome;
+    run("patrolsimsrc num-buffers=90 pir-bearings=0 pir-range=" + std::string(range) + " " + kCrosses + kSink,
+        outcome);
+    bool detects = false;
+    for (const CerberusPir& pir : outcome.readings) detects = detects || pir.sensors[0] == 1;
+    fail_unless_equals_int(detects, expected);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(messages_of_sensors_come_without_a_link) {
   Outcome outcome;
   run("patrolsimsrc num-buffers=90 pir-bearings=0,180 " + kCrosses + kSink, outcome);
@@ -361,6 +392,35 @@ GST_START_TEST(both_pads_end) {
     fail_unless_equals_uint64(GST_BUFFER_PTS(outcome.frames[i]), i * 100 * GST_MSECOND);
     fail_unless_equals_int(gst_buffer_get_size(outcome.frames[i]), 3);
   }
+}
+GST_END_TEST
+
+// Stopped while both threads run, each in the middle of something.
+GST_START_TEST(both_pads_begin_anew_after_a_stop_at_any_moment) {
+  GstElement* pipeline = gst_parse_launch(
+      "patrolsimsrc name=robot people=1 robot.video ! video/x-raw,width=32,height=24 ! fakesink async=false "
+      "robot.pir ! fakesink name=sink signal-handoffs=true async=false",
+      nullptr);
+  GstElement* sink = gst_bin_get_by_name(GST_BIN(pipeline), "sink");
+  struct Seen {
+    std::atomic<int> readings = 0;
+    std::atomic<bool> from_zero = false;
+  } seen;
+  g_signal_connect(sink, "handoff", G_CALLBACK(+[](GstElement*, GstBuffer* buffer, GstPad*, Seen* to) {
+                     if (to->readings++ == 0) to->from_zero = GST_BUFFER_PTS(buffer) == 0;
+                   }),
+                   &seen);
+  for (int round = 0; round < 10; ++round) {
+    seen.readings = 0;
+    seen.from_zero = false;
+    gst_element_set_state(pipeline, GST_STATE_PLAYING);
+    for (int wait = 0; seen.readings < 1 + round % 3 && wait < 60000; ++wait) g_usleep(1000);
+    fail_unless(seen.readings > 0 && seen.from_zero, "round %d: %d readings", round, int(seen.readings));
+    gst_element_set_state(pipeline, GST_STATE_READY);
+  }
+  gst_element_set_state(pipeline, GST_STATE_NULL);
+  gst_object_unref(sink);
+  gst_object_unref(pipeline);
 }
 GST_END_TEST
 
@@ -423,9 +483,12 @@ static Suite* patrolsimsrc_suite() {
   tcase_add_test(tc, without_a_head_no_frame_waits_and_where_one_is_asked_for_its_absence_is_an_error);
   tcase_add_test(tc, a_closed_loop_gives_the_same_way_each_time_with_and_without_queues);
   tcase_add_test(tc, pirfusion_reads_the_sensors_as_it_reads_pirsrc);
+  tcase_add_test(tc, sensors_are_invalid_while_their_module_warms_up);
+  tcase_add_test(tc, a_module_with_a_short_range_does_not_reach);
   tcase_add_test(tc, messages_of_sensors_come_without_a_link);
   tcase_add_test(tc, what_the_robots_own_turn_triggers_is_doubtful);
   tcase_add_test(tc, both_pads_end);
+  tcase_add_test(tc, both_pads_begin_anew_after_a_stop_at_any_moment);
   tcase_add_test(tc, settings_that_cannot_be_are_errors_that_name_them);
   tcase_add_test(tc, a_plan_of_the_users_own_is_read);
   tcase_add_test(tc, a_frame_that_waits_for_its_head_ends_at_once_when_the_element_stops);

@@ -76,6 +76,43 @@ START_TEST(what_is_faint_or_narrow_or_slow_does_not_trigger) {
 }
 END_TEST
 
+// Whether a person who walks on a circle around the module is found.
+static bool finds(double metres, double speed, double low = 0, double range = 12) {
+  PirTraits traits = kTraits;
+  traits.threshold = threshold_for(traits, range);
+  PirSensor sensor(traits, 0);
+  const double rate = speed / metres;
+  bool found = false;
+  for (Time now{}; cerberus::motion::seconds(now) < radians(118) / rate; now += 10ms) {
+    const double bearing = rate * cerberus::motion::seconds(now) - radians(59);
+    const Warmth thing{bearing, 2 * std::atan(.24 / metres), 6, metres, low};
+    sensor.elapse(now, std::vector{thing});
+    found = found || sensor.output();
+  }
+  return found;
+}
+
+// The paper's Figure 1: zone A to 12 m for what is up to 1.5 m high, zone C to 3 m for what is up to 2.5 m high.
+START_TEST(a_module_sees_as_far_as_its_zones_reach) {
+  ck_assert(finds(3, 1) && finds(11.9, 1));
+  ck_assert(!finds(12.1, 1));
+  ck_assert(finds(2.9, 1, 2.4) && finds(11.9, 1, 1.4));
+  ck_assert(!finds(3.1, 1, 1.6) && !finds(2.9, 1, 2.6));
+}
+END_TEST
+
+// The paper's people walk at .1 to 4 m/s.
+START_TEST(a_module_finds_slow_and_fast_people_who_are_near) {
+  for (const double speed : {.1, .5, 1., 2., 4.})
+    for (const double metres : {1.5, 3., 5.})
+      ck_assert_msg(finds(metres, speed), "%.1f m/s, %.1f m", speed, metres);
+  ck_assert(finds(11, 2) && finds(11, 4));
+  ck_assert(!finds(11, .1));
+  // A module of 5 m is the less sensitive one.
+  ck_assert(finds(4.8, 1, 0, 5) && !finds(8, 1, 0, 5));
+}
+END_TEST
+
 START_TEST(a_module_is_blind_for_a_moment_after_its_output_fell) {
   // Borders at .5 s and, after a rest, at `second`.
   const auto changes = [](double second) {
@@ -134,7 +171,8 @@ int main() {
   return cerberus::tests::run_suite(
       "sim_pir",
       {what_crosses_zones_triggers_and_what_stands_does_not, only_the_field_of_a_sensor_sees,
-       what_is_faint_or_narrow_or_slow_does_not_trigger, a_module_is_blind_for_a_moment_after_its_output_fell,
+       what_is_faint_or_narrow_or_slow_does_not_trigger, a_module_sees_as_far_as_its_zones_reach,
+       a_module_finds_slow_and_fast_people_who_are_near, a_module_is_blind_for_a_moment_after_its_output_fell,
        a_robot_that_drives_passes_what_stands_beside_its_way,
        a_robot_that_turns_sees_everything_turn_the_other_way, a_person_comes_out_of_sight_and_walks_across});
 }

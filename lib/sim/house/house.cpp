@@ -278,7 +278,7 @@ void House::sense(Time now) {
     const double away = std::max(std::hypot(x, y), .1);
     const bool hidden = !room_to_step_.sees(here, at);
     seen_.push_back({sensing::wrap(std::atan2(y, x) - base_.yaw()),
-                     hidden ? 0 : 2 * std::atan(width / 2 / away), contrast});
+                     hidden ? 0 : 2 * std::atan(width / 2 / away), contrast, away});
   };
   for (const Person& person : people_)
     add({person.walker.stance().x, person.walker.stance().y}, kWide, kWarm);
