@@ -58,11 +58,6 @@ const std::vector<Mechanism> kMechanisms{
      3,
      {},
      [](Settings& s) { s.numbers.mechanisms.components.origins = false; }},
-    {"find_ghosts",
-     {"components/components.cpp find_ghosts"},
-     3,
-     {},
-     [](Settings& s) { s.numbers.mechanisms.components.find_ghosts = false; }},
     {"resting_ghosts",
      {"components/resting_ghosts.*"},
      0,
@@ -74,11 +69,6 @@ const std::vector<Mechanism> kMechanisms{
      6,
      {},
      [](Settings& s) { s.numbers.mechanisms.components.merge_neighbours = false; }},
-    {"fragment_joining",
-     {"components/fragment_joining.*", "components/components.cpp join_fragments"},
-     2,
-     {},
-     [](Settings& s) { s.numbers.mechanisms.components.join_fragments = false; }},
     {"burnt_in", {"burnt_in/*"}, 0, {}, [](Settings& s) { s.options.burnt_in = false; }},
 
     // From the mask to regions.

@@ -25,9 +25,9 @@ std::string values_of(DetectorSettings settings) {
   const auto* c = &m.components;
   for (const bool on :
        {m.light, m.alignment, m.mosaic, m.motion_blur, c->flashes, c->was_empty, c->sides_go_on, c->origins,
-        c->find_ghosts, c->resting_ghosts, c->merge_neighbours, c->join_fragments, settings.camera_motion,
-        settings.options.burnt_in, settings.options.regions.people,
-        settings.options.foreground.background_model, settings.options.foreground.noise_floor})
+        c->resting_ghosts, c->merge_neighbours, settings.camera_motion, settings.options.burnt_in,
+        settings.options.regions.people, settings.options.foreground.background_model,
+        settings.options.foreground.noise_floor})
     all += on ? '1' : '0';
   return all;
 }

@@ -24,10 +24,6 @@ constexpr struct Parameters {
   int least_moved = 4;  // pixels: fewer are noise
   int least_rest = 4;   // ticks for which what is not kept rests before it is absorbed
   int shake = 3;        // frames within which a shaken camera has not moved away from what it saw
-  int contrast = 6;     // grey levels of an edge: the comparison's limit for noise
-  double certain =
-      5;  // times as many outline pixels are edges of the frame only as of the background only: an object
-  double certain_share = 0.1;      // of the outline that is an edge of the frame only, of a certain object
   double least_ghost = 1 / 8.0;    // of an object's area that its ghost has, and the other way round
   double least_area = 1 / 1280.0;  // of the picture: the outline of a smaller component is no evidence
 
@@ -39,8 +35,6 @@ constexpr struct Parameters {
   double level = 0.5;         // of the lower one's height at which they stand beside each other
   double fragment = 1 / 3.0;  // of the larger one's area: below, a component is a fragment
 
-  double least_fragment = 1 / 2560.0;  // of the picture: a smaller component joins nothing
-  std::size_t most_fragments = 128;    // more components are clutter
   // Derived: more than 320 x 240 pixels can have (labelling.cpp). So many in a larger picture are rain or snow, and the
   // comparison of all pairs would take longer than a frame.
   std::size_t most_components = 512;
@@ -72,7 +66,7 @@ void ForegroundComponents::reset() {
   moved_ = kParameters.shake;
 }
 
-void ForegroundComponents::measure(const ComponentInput& input, const FrameWindows& windows, BitView mask) {
+void ForegroundComponents::measure(const ComponentInput& input, const FrameWindows& windows) {
   const int w = input.frame.width;
   // A background that had to be registered is less reliable: only present motion counts.
   const int recent_window = input.still ? windows.recent : windows.moving;
@@ -99,37 +93,8 @@ void ForegroundComponents::measure(const ComponentInput& input, const FrameWindo
     };
     if (r.first >= 2) contrast(r.first - 2, std::min(r.first + 1, w - 1));
     if (r.end + 1 < w) contrast(r.end + 1, std::max(r.end - 2, 0));
-    if (!input.still) continue;
-    measure_edges(input, r, mask, evidence);
-    origins_.add_overlap(r, evidence.overlap);
+    if (input.still) origins_.add_overlap(r, evidence.overlap);
   }
-}
-
-void ForegroundComponents::measure_edges(const ComponentInput& input, const Run& r, BitView mask,
-                                         Evidence& evidence) const {
-  const GrayView &f = input.frame, &b = input.background;
-  const auto across = [&](int x_out, int y_out, int x_in, int y_in) {
-    const int in_frame = std::abs(f.at(x_out, y_out) - f.at(x_in, y_in));
-    const int in_background = std::abs(b.at(x_out, y_out) - b.at(x_in, y_in));
-    evidence.frame_only += in_frame > kParameters.contrast && in_frame > 2 * in_background;
-    evidence.background_only += in_background > kParameters.contrast && in_background > 2 * in_frame;
-    ++evidence.places;
-  };
-  const int w = f.width, h = f.height, y = r.row;
-  if (r.first >= 2) across(r.first - 2, y, std::min(r.first + 1, w - 1), y);
-  if (r.end + 1 < w) across(r.end + 1, y, std::max(r.end - 2, 0), y);
-  const auto along = [&](int beyond, int y_out, int y_in) {
-    if (y_out < 0 || y_in < 0 || y_out >= h || y_in >= h) return;
-    const std::uint64_t *row = mask.row(y), *next = mask.row(beyond);
-    for_words(r.first, r.end, [&](int word, std::uint64_t ones) {
-      for (std::uint64_t left = row[word] & ~next[word] & ones; left; left &= left - 1) {
-        const int x = 64 * word + std::countr_zero(left);
-        across(x, y_out, x, y_in);
-      }
-    });
-  };
-  along(y - 1, y - 2, y + 1);
-  along(y + 1, y + 2, y - 1);
 }
 
 // Decides about one component by its own evidence.
@@ -169,28 +134,24 @@ void ForegroundComponents::decide(const ComponentInput& input, const Component& 
 }
 
 // The model shows an object that has stood there since the model's start. When the object leaves, its ghost stays. A
-// component at rest is a ghost if another one of the same origin moves nearby, unless its outline is certain. The
-// outline of a ghost's fragment alone is weak: it ends where the object and the background behind it happen to be
-// alike. That of a small fragment is no evidence.
+// component at rest is a ghost if another one of the same origin moves nearby, unless its outline is certainly an object's.
+// That of a small fragment is no evidence.
 void ForegroundComponents::find_ghosts() {
-  const Parameters& p = kParameters;
   const auto components = labeller_.components();
   for (std::size_t i = 0; i < components.size(); ++i) {
     Evidence& evidence = evidence_[i];
     const Component& a = components[i];
-    const bool newest = 2 * evidence.newest_pixels > static_cast<int>(a.area);
-    const bool certain =
-        evidence.object && !newest &&
-        evidence.frame_only > p.certain * evidence.background_only + p.certain_share * evidence.places;
     if (evidence.moving || evidence.origin != ComponentOrigins::Origin::inside) continue;
+    const bool newest = 2 * evidence.newest_pixels > static_cast<int>(a.area);
     for (std::size_t j = 0; j < components.size(); ++j) {
       const Evidence& other = evidence_[j];
       if (!other.moved_recently || !other.moving || other.ghost ||
           other.origin != ComponentOrigins::Origin::inside)
         continue;
       const Component& b = components[j];
-      if (certain && a.area >= p.least_ghost * b.area) continue;
-      if (b.area > p.least_ghost * a.area && are_within(std::max(a.height(), b.height()), a, b)) {
+      if (evidence.contrast.is_certain_object() && !newest && a.area >= kParameters.least_ghost * b.area)
+        continue;
+      if (b.area > kParameters.least_ghost * a.area && are_within(std::max(a.height(), b.height()), a, b)) {
         evidence.doubtful = true, evidence.kept = false;
         break;
       }
@@ -202,18 +163,17 @@ bool ForegroundComponents::classify(const ComponentInput& input, const FrameWind
                                     MutableBitView mask, MutableBitView absorb) {
   labeller_.find(mask, input.frame.width);
   const auto components = labeller_.components();
-  found_ = components.size();
   evidence_.assign(components.size(), {});
   if (!input.still && ++moved_ == kParameters.shake) {
     origins_.reset();
     flashes_.reset();
   }
-  measure(input, windows, mask);
+  measure(input, windows);
   for (std::size_t i = 0; i < components.size(); ++i) decide(input, components[i], evidence_[i]);
   if (input.is_aligned() && input.mechanisms.sides_go_on) doubt_edges(input, mask);
   if (input.mechanisms.flashes && input.still) remove_flashes(input, windows, mask);
   if (input.still) {
-    if (input.mechanisms.find_ghosts && components.size() <= kParameters.most_components) find_ghosts();
+    if (components.size() <= kParameters.most_components) find_ghosts();
     for (const Run& r : labeller_.runs()) origins_.record(r, evidence_[r.component].origin);
   }
   bool young_objects = false;
@@ -335,11 +295,11 @@ void ForegroundComponents::merge_neighbours(const ComponentInput& input, const F
 
 void ForegroundComponents::join_fragments(const ComponentInput& input, MutableBitView closed,
                                           MutableBitView mask) {
-  if (!input.mechanisms.join_fragments || !input.still || found_ < 2) return;
+  if (!input.still) return;
   const Size size = input.frame.size();
-  const auto components = labeller_.find(
-      closed, size.width, static_cast<std::uint32_t>(kParameters.least_fragment * size.area()));
-  if (components.size() <= kParameters.most_fragments) vision::join_fragments(input.frame, components, mask);
+  const auto components =
+      labeller_.find(closed, size.width, static_cast<std::uint32_t>(kParameters.least_area * size.area()));
+  if (components.size() <= kParameters.most_components) vision::join_fragments(input.frame, components, mask);
 }
 
 std::size_t ForegroundComponents::bytes() const {

@@ -46,10 +46,8 @@ struct ComponentMechanisms {
   bool was_empty = true;         // what left the picture moves no more: decide()
   bool sides_go_on = true;       // component_sides.h
   bool origins = true;           // component_origins.h
-  bool find_ghosts = true;       // by components of the same origin
   bool resting_ghosts = true;    // resting_ghosts.h
   bool merge_neighbours = true;  // of a young background
-  bool join_fragments = true;    // fragment_joining.h
 };
 
 struct ComponentInput {
@@ -96,11 +94,9 @@ class ForegroundComponents {
     int moving_pixels = 0, recent_pixels = 0;  // pixels that moved within these windows
     int young_pixels = 0, newest_pixels = 0;   // pixels learnt for less than the windows `young` and `newest`
     int outline = 0;                           // outline pixels to the left and right
-    OutlineContrast contrast;                  // of those that lie inside the frame and the background
-    int places = 0;                            // outline pixels on all four sides
-    int frame_only = 0, background_only = 0;   // those that are an edge of one of the two only
     ComponentOrigins::Overlap overlap;
     ComponentOrigins::Origin origin = ComponentOrigins::Origin::outside;
+    OutlineContrast contrast;  // of those that lie inside the frame and the background
     bool moved_recently = false, moving = false;
     bool object = false, ghost = false;  // decided by the outline; both false: undecided
     bool doubtful = false;               // stays only while it moves
@@ -109,8 +105,7 @@ class ForegroundComponents {
     bool merged = false;                 // with a neighbour
     bool fragment = false;               // of a larger neighbour
   };
-  void measure(const ComponentInput& input, const FrameWindows& windows, BitView mask);
-  void measure_edges(const ComponentInput& input, const Run& run, BitView mask, Evidence& evidence) const;
+  void measure(const ComponentInput& input, const FrameWindows& windows);
   void decide(const ComponentInput& input, const Component& component, Evidence& evidence) const;
   void remove_flashes(const ComponentInput& input, const FrameWindows& windows, BitView mask);
   void doubt_edges(const ComponentInput& input, BitView mask);
@@ -122,7 +117,6 @@ class ForegroundComponents {
   Flashes flashes_;
   ComponentOrigins origins_;
   RestingGhosts resting_ghosts_;
-  std::size_t found_ = 0;  // components that classify() found, before any was dropped
   int moved_ =
       3;  // frames since the camera stood; as many as `shake` and more: it has moved away from what it saw
 };

@@ -16,9 +16,8 @@ constexpr struct Parameters {
   int contrast = 6;      // grey levels of an edge: the comparison's limit for noise
   int slack = 2;         // pixels to either side in which a side is searched
   // Along the side of an object the contrast keeps its sign. Gravel has edges in every row, too, but their sign changes
-  // from grain to grain: two rows further apart than a side is searched (4 pixels) agree on both sides in a quarter of
-  // the cases. Those of an object agree in more than half, also where the background behind it changes.
-  int lag = 4;  // rows
+  // from grain to grain: two rows further apart than a side is searched agree on both sides in a quarter of the cases.
+  // Those of an object agree in more than half, also where the background behind it changes.
   double agreement = 0.5;
 } kParameters;
 
@@ -47,7 +46,7 @@ void join_fragments(GrayView frame, std::span<const Component> components, Mutab
       };
       const auto left = [&](int y) { return side_at(frame, between(a.left, b.left, y), y); };
       const auto right = [&](int y) { return side_at(frame, between(a.right, b.right, y), y); };
-      const int lag = std::min(kParameters.lag, rows / 2);
+      const int lag = std::min(2 * kParameters.slack, rows / 2);
       int kept = 0;
       for (int y = a.bottom; y + lag < b.top; ++y)
         kept += left(y) * left(y + lag) > 0 && right(y) * right(y + lag) > 0;

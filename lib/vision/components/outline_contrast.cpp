@@ -36,6 +36,10 @@ bool OutlineContrast::is_certain_ghost() const {
   return background > kParameters.certain_ratio * frame + kParameters.certain_margin * pixels;
 }
 
+bool OutlineContrast::is_certain_object() const {
+  return frame > kParameters.certain_ratio * background + kParameters.certain_margin * pixels;
+}
+
 bool OutlineContrast::is_side_of_object() const {
   return frame >= kParameters.ratio * background + kParameters.certain_margin * pixels;
 }

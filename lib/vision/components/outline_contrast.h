@@ -18,6 +18,7 @@ struct OutlineContrast {
   bool is_ghost() const;
   // Also of a part of an outline, or of one that ends where the object and the background behind it happen to be alike.
   bool is_certain_ghost() const;
+  bool is_certain_object() const;
   // As one of an object's two sides; true also if nothing could be compared.
   bool is_side_of_object() const;
 };
