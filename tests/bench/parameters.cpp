@@ -112,7 +112,7 @@ void name(Numbers n, TrackParameters& p) {
          N(panned_widens),
          N(coast_brake),
          N(off_screen_brake),
-         N(off_screen_speed),
+
          N(confidence_time),
          N(same_extent_least),
          N(same_extent_most),
@@ -126,13 +126,13 @@ void name(Numbers n, TrackParameters& p) {
          N(border),
          N(least_visible),
          N(cut_margin),
-         N(cut_most),
-         N(leaving),
+         N(whole),
+
          N(whole_lasts),
          N(end_speed),
          N(upright),
          N(camera_still),
-         N(misfit),
+         N(lasts),
          N(panned_misfit),
          N(extent_known),
          N(fragment_walk),
@@ -146,24 +146,23 @@ void name(Numbers n, TrackParameters& p) {
          N(found_brake),
          N(apart),
          N(different),
+         N(covered),
+         N(travelled),
          N(crossing)});
 }
 
 void name(Numbers n, LifeCycle::Parameters& p) {
-  n.add({N(least_travel), N(least_hits),      N(slow_least_hits), N(slow_confirm),   N(confirm_slack),
-         N(hit_share),    N(tentative_coast), N(coast_share),     N(border_coast),   N(certain),
-         N(sliver),       N(still),           N(fitted),          N(stop_travel),    N(seen),
-         N(remnant),      N(covered),         N(occluded_coast),  N(off_screen_fit), N(off_screen_travel)});
+  n.add({N(least_travel), N(least_hits), N(slow_least_hits), N(slow_confirm), N(confirm_slack), N(hit_share),
+         N(tentative_coast), N(coast_share), N(border_coast), N(certain), N(sliver), N(seen), N(remnant)});
 }
 
 void name(Numbers n, DataAssociation::Parameters& p) {
-  n.add({N(unmatched),       N(worst),      N(shared),        N(returned_area),
-         N(speed_slack),     N(leap),       N(usual_change),  N(appearance_cost),
-         N(known_cost),      N(known_time), N(sudden_change), N(off_screen_change),
-         N(larger),          N(inside),     N(crowd),         N(occluded_overlap),
-         N(fragment_inside), N(merge_time), N(filled),        N(part_area),
-         N(part_inside),     N(upright),    N(common_height), N(common_rows),
-         N(common_columns),  N(slender)});
+  n.add({N(unmatched),      N(worst),       N(shared),           N(returned_area),
+         N(speed_slack),    N(leap),        N(usual_change),     N(appearance_cost),
+         N(known_cost),     N(known_time),  N(sudden_change),    N(off_screen_change),
+         N(larger),         N(inside),      N(occluded_overlap), N(fragment_inside),
+         N(filled),         N(part_inside), N(common_height),    N(common_rows),
+         N(common_columns), N(slender)});
 }
 
 void name(Numbers n, RegionAppearances::Parameters& p) {

@@ -114,7 +114,7 @@ START_TEST(a_wrong_assignment_changes_nothing_and_the_error_lists_the_names) {
       {"tracks.gate=3", "no number is named \"tracks.gate\"", " regions.least_share "},
       {"gate=3", "no number is named \"gate\"", " appearance.rebin"},
       {"track.gate", "\"track.gate\" is not stage.name=value", " track.gate_noise "},
-      {"", "\"\" is not stage.name=value", " life.still "},
+      {"", "\"\" is not stage.name=value", " life.seen "},
       {"track.gate=", "track.gate takes a number, not \"\"", " track.gate "},
       {"track.gate=3,5", "track.gate takes a number, not \"3,5\"", " track.gate "},
       {"track.gate=nan", "track.gate takes a number, not \"nan\"", " track.gate "},

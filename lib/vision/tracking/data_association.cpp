@@ -12,6 +12,10 @@ Box bounding(const Box& a, const Box& b) {
   return {x, y, std::max(a.right(), b.right()) - x, std::max(a.bottom(), b.bottom()) - y};
 }
 
+bool is_upright(const Box& box) {
+  return box.height > kTrackParameters.upright * box.width;
+}
+
 // From the centre where the track is expected, frame pixels.
 double distance_between(const TrackHypothesis& t, const Box& box) {
   return std::hypot(centre(box).x - t.x.position, centre(box).y - t.y.position);
@@ -50,9 +54,10 @@ bool DataAssociation::one_above_another(const Box& a, const Box& b, const Box& r
 }
 
 // Is it small and, all but its rim, inside the other?
-bool DataAssociation::is_part(const Box& part, const Box& whole) const {
-  return part.area() < parameters_.part_area * whole.area() &&
-         overlap_area(part, whole) > parameters_.part_inside * part.area();
+bool DataAssociation::is_part(const TrackHypothesis& part, const TrackHypothesis& whole) const {
+  const Box a = part.box(), b = whole.box();
+  return a.area() < part.parameters->fragment_area * b.area() &&
+         overlap_area(a, b) > parameters_.part_inside * a.area();
 }
 
 // Is an object that has come so far, frame pixels, beyond maximum-speed?
@@ -250,9 +255,9 @@ void DataAssociation::merge_fragments() {
     const int all = count;
     for (std::size_t i = 0; i < tracks_.size() && all > 1; ++i) {
       const TrackHypothesis &t = tracks_[i], &whole = tracks_[oldest];
-      if (i == oldest || !shares(i) || t.shared.time < parameters_.merge_time) continue;
+      if (i == oldest || !shares(i) || t.shared.time < t.parameters->lasts) continue;
       const bool above = one_above_another(t.box(), whole.box(), regions_[j].box);
-      const bool fragment = is_part(t.box(), whole.box()) || (hollow && !look_different(t, whole));
+      const bool fragment = is_part(t, whole) || (hollow && !look_different(t, whole));
       if (!above && (went_apart(t, whole) || !fragment)) continue;
       matches_[i].merged = true;
       if (above) matches_[oldest].reshaped = true;
@@ -275,7 +280,8 @@ bool DataAssociation::others_expected(std::span<const TrackHypothesis> tracks, c
 bool DataAssociation::crowded(std::span<const TrackHypothesis> tracks, const TrackHypothesis& self,
                               const Box& region) const {
   return std::ranges::any_of(tracks, [&](const TrackHypothesis& o) {
-    return &o != &self && o.in_view() && overlap_area(o.box(), region) > parameters_.crowd * region.area();
+    return &o != &self && o.in_view() &&
+           overlap_area(o.box(), region) > o.parameters->covered * region.area();
   });
 }
 

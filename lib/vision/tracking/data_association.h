@@ -50,20 +50,16 @@ class DataAssociation {
     // Blobs of several.
     double larger = 1.3;  // times the area of a track: a region that may hold others
     double inside = 0.5;  // of a track's area that lies in the blob
-    double crowd = 0.2;   // of a region's area that another track covers: not isolated
     // Intersection over union of an occluded track with the region. swept: .3 to .36, which are
     // equal but for person 11 of bench-in_window.
     double occluded_overlap = 0.33;
 
     // Fragments.
     double fragment_inside = 0.6;  // of the fragment's area that lies in the track's box
-    double merge_time = 0.3;       // s in one region before tracks are merged
-    double filled = 0.4;     // of the region that its tracks fill: below it they are fragments of one object
-    double part_area = 0.2;  // of the other's area: a smaller track is a part of it,
-    double part_inside = 0.6;  // if so much of it lies inside
+    double filled = 0.4;  // of the region that its tracks fill: below it they are fragments of one object
+    double part_inside = 0.6;  // of a small track's area that lies in the other one, of which it is a part
 
     // Two persons side by side, not two fragments of one.
-    double upright = 1.3;        // height / width
     double common_height = 0.6;  // rows in common, of the track's height
 
     // Two fragments of one person, one above the other.
@@ -126,10 +122,9 @@ class DataAssociation {
   void share_regions();
   bool occludes(const TrackHypothesis& front, const TrackHypothesis& track, const Box& region) const;
   void merge_fragments();
-  bool is_part(const Box& part, const Box& whole) const;
+  bool is_part(const TrackHypothesis& part, const TrackHypothesis& whole) const;
   bool one_above_another(const Box& a, const Box& b, const Box& region) const;
   bool side_by_side(const Box& a, const Box& b, const Box& expected) const;
-  bool is_upright(const Box& box) const { return box.height > parameters_.upright * box.width; }
 
   Parameters parameters_;
   // Of the call in progress.

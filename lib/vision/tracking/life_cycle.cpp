@@ -157,8 +157,7 @@ void LifeCycle::advance_off_screen(TrackHypothesis& t) {
 // Goes off-screen where the camera has turned away from a well-known object, or where that has walked out of the picture of
 // a head, else it is lost.
 void LifeCycle::depart(TrackHypothesis& t) {
-  const Parameters& q = parameters_;
-  const bool known = t.fit.longest >= q.off_screen_fit && t.travel.most >= q.off_screen_travel;
+  const bool known = t.fit.longest >= t.parameters->extent_known && t.travel.most >= t.parameters->travelled;
   const bool at_edge = outside(t) || t.at_border(frame_.size);
   if (!known || !at_edge || t.unseen >= options_.away_time)
     lose(t);
@@ -175,8 +174,9 @@ void LifeCycle::depart(TrackHypothesis& t) {
 // object came.
 bool LifeCycle::has_stopped(const TrackHypothesis& t) const {
   const Parameters& q = parameters_;
-  if (t.slow < q.still || t.fit.time < q.fitted || t.travel.most < q.stop_travel || t.seen_for() < q.seen ||
-      t.uncut.leaving)
+  const TrackParameters& of = *t.parameters;
+  if (t.slow < of.lasts || t.fit.time < of.extent_known || t.travel.most < of.travelled ||
+      t.seen_for() < q.seen || t.uncut.leaving)
     return false;
   const bool remnant = t.box().area() < q.remnant * t.uncut.width * t.uncut.height;
   return !remnant && !t.left && !covered(t);
@@ -187,7 +187,7 @@ bool LifeCycle::covered(const TrackHypothesis& t) const {
   const Box box = t.box();
   return std::ranges::any_of(tracks_, [&](const TrackHypothesis& o) {
     return &o != &t && o.id != 0 && o.match.region >= 0 &&
-           overlap_area(o.box(), box) > parameters_.covered * box.area();
+           overlap_area(o.box(), box) > t.parameters->covered * box.area();
   });
 }
 
@@ -219,7 +219,7 @@ void LifeCycle::fade(TrackHypothesis& t, double time) const {
 
 std::optional<TrackState> LifeCycle::published(const TrackHypothesis& t) const {
   const Parameters& q = parameters_;
-  if (t.match.occluded && t.shared.unlocated > q.occluded_coast) return {};
+  if (t.match.occluded && t.shared.unlocated > t.parameters->lasts) return {};
   if (is_sliver(t)) return {};
   if (t.is(TrackPhase::confirmed)) return TrackState::seen;
   if (!t.in_view() || t.shared.unlocated >= t.parameters->crossing) return {};

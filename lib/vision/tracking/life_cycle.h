@@ -50,19 +50,10 @@ class LifeCycle {
     // unpublished. derived: half of the width of a walking person. swept: MOTA on TUD-Campus is .21 without, .26 to .27
     // from .14 to .22.
     double sliver = 0.18;
-    double occluded_coast = 0.3;  // s for which an occluded track is published
-    // Stopping: the object was well seen, slower and slower.
-    double still = 0.3;         // s of standing, or nearly
-    double fitted = 0.5;        // s of regions of its extent
-    double stop_travel = 0.45;  // S that it came
-    double seen = 1.5;          // s for which it was seen
+    double seen = 1.5;  // s for which an object was seen that has stopped
     // Share of the largest width times the largest height that it had: a smaller box is what is left of it. measured: one was
     // 11x4 pixels, another 37x5. swept: 0 to .25. Guard: precision at rest in bench-moving_window.
     double remnant = 0.08;
-    double covered = 0.2;  // of its box that another track covers: it may be behind that one
-    // Off-screen.
-    double off_screen_fit = 0.5;      // s of regions of its extent
-    double off_screen_travel = 0.45;  // S
   };
 
   LifeCycle() = default;

@@ -8,8 +8,8 @@ void TrackHypothesis::correct(const Region& region, bool alone, double seconds, 
   const Box& seen = region.box;
   const Comparison how = compare(seen, alone && region.kind != RegionKind::group, frame);
   const double before = size();
-  uncut.leaving = (how.cut_x && seen.width < parameters->leaving * uncut.width) ||
-                  (how.cut_y && seen.height < parameters->leaving * uncut.height);
+  uncut.leaving = (how.cut_x && seen.width < parameters->whole * uncut.width) ||
+                  (how.cut_y && seen.height < parameters->whole * uncut.height);
   if (!how.fits && alone && outgrown(region, how.cut(), seconds)) {
     replace_extent(seen, how.cut());
   } else if (found) {
@@ -79,7 +79,7 @@ TrackHypothesis::Comparison TrackHypothesis::compare(const Box& seen, bool alone
 // Does the picture's edge cut a region off? Not the ends of an object that fills the picture from side to side.
 bool TrackHypothesis::is_cut(double from, double to, double largest, int side) const {
   const double margin = parameters->cut_margin * side;
-  return (from < margin || to > side - margin) && largest < parameters->cut_most * side;
+  return (from < margin || to > side - margin) && largest < parameters->whole * side;
 }
 
 // One object, one region, extents that disagree: does the region's extent replace the track's?
@@ -98,10 +98,10 @@ bool TrackHypothesis::outgrown(const Region& region, bool cut, double seconds) {
   }
   fit.misfit += seconds;
   if (cut || match.reshaped) return true;
-  if (is_person_like(region)) return kind != RegionKind::person_like || fit.misfit >= q.misfit;
-  if (seen.area() > box().area()) return fit.misfit >= q.misfit;
+  if (is_person_like(region)) return kind != RegionKind::person_like || fit.misfit >= q.lasts;
+  if (seen.area() > box().area()) return fit.misfit >= q.lasts;
   // While the camera moves a smaller region is believed in its second frame.
-  if (camera_moved ? fit.misfit < q.panned_misfit || fit.misfit <= seconds : fit.misfit < q.misfit)
+  if (camera_moved ? fit.misfit < q.panned_misfit || fit.misfit <= seconds : fit.misfit < q.lasts)
     return false;
   const double gone = std::hypot(centre(seen).x - fit.misfit_from.x, centre(seen).y - fit.misfit_from.y);
   return !fit.was_still || fit.time < q.extent_known || gone > q.fragment_walk * size();

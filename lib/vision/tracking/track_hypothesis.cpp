@@ -199,7 +199,7 @@ void TrackHypothesis::restore_whole() {
     y.position = whole.y + y.velocity * uncut.since;
   }
   for (MovingValue* a : {&x, &y}) {
-    a->vv = std::min(a->vv, square(q.off_screen_speed * size()));
+    a->vv = std::min(a->vv, square(q.stand_speed * size()));
     a->pv = 0;
   }
 }

@@ -37,10 +37,7 @@ struct TrackParameters {
   // bench-in_window, who is lost with 1.
   double coast_brake = 0.8;
   double off_screen_brake = 3.0;  // s, the same while the track is off-screen
-  // S/s, the largest standard deviation of its velocity as it goes off-screen: the filter's is that of what a moving camera
-  // follows. swept: .1 to 100. Guard: the IDF1 of bench-moving_window.
-  double off_screen_speed = 0.3;
-  double confidence_time = 0.5;  // s, time constant of the confidence
+  double confidence_time = 0.5;   // s, time constant of the confidence
 
   // Extents that agree, seen / expected.
   double same_extent_least = 0.65, same_extent_most = 1.5;
@@ -50,10 +47,11 @@ struct TrackParameters {
   double stride = 0.65;
 
   // Validation gate and pair cost.
-  double gate_noise = 0.15;    // S that a place may be wrong by, beyond the filter's own variance
-  double gate = 4.0;           // standard deviations
-  double fragment_area = 0.2;  // of the track's area: a smaller region may be a fragment of it,
-  double fragment_gate = 1.5;  // standard deviations, and lies where the track is expected
+  double gate_noise = 0.15;  // S that a place may be wrong by, beyond the filter's own variance
+  double gate = 4.0;         // standard deviations
+  // Of the track's area: a smaller region, or a smaller track, may be a fragment of it.
+  double fragment_area = 0.2;
+  double fragment_gate = 1.5;  // standard deviations: a fragment lies where the track is expected
   double size_cost = 0.5;      // per unit of the logarithm
   double gate_cost = 0.1;      // per standard deviation
 
@@ -61,21 +59,23 @@ struct TrackParameters {
   double border = 0.1;         // S, distance that still counts as at the edge
   double least_visible = 0.1;  // of each extent; a smaller rest of the box is not worth cutting to
   double cut_margin = 0.01;    // of the picture's side: a region this close to the edge is cut by it,
-  double cut_most = 0.7;       // of the side: unless the object fills the picture from edge to edge
-  double leaving = 0.7;        // of the largest extent so far: a cut region below it is leaving the picture,
+  // Of the side: unless the object fills the picture from edge to edge. Of the largest extent so far: a cut region below it
+  // is leaving the picture.
+  double whole = 0.7;
   // s, and its place is where it should be by now if it was seen whole since. swept: .5 to 10.
   double whole_lasts = 2.0;
 
   // Growth: what shows that an object moves although its centre does not.
   double end_speed = 1.0;  // S/s of an end of the box; a faster one reveals more of a partly seen object
-  double upright = 1.3;    // height / width, at least, of an object whose ends are followed
+  double upright = 1.3;    // height / width, at least, of an upright person
   double camera_still =
       0.5 / 320;  // of the frame's width. derived: half an analysed pixel of registration error
 
-  // s after which a region of another extent replaces the track's. measured: by one value in place of .2, .25 and .4 s for
-  // persons, larger and smaller regions MOTA is .55 +- .35 and IDF1 .49 +- .20 higher. Guard: bench-development,
-  // bench-steady.
-  double misfit = 0.3;
+  // s for which something must last until it counts: a region of another extent until it replaces the track's, tracks in one
+  // region until they are merged, standing until the object stops, and being occluded until the track is not published.
+  // measured: by one value in place of .2, .25 and .4 s for persons, larger and smaller regions MOTA is .55 +- .35 and IDF1
+  // .49 +- .20 higher. Guard: bench-development, bench-steady.
+  double lasts = 0.3;
   // s, of a smaller region while the camera moves, and two frames at least: what is followed there turns and goes away
   // quickly. swept: the skier of otb_Skiing is found in .65 of the frames with .05, .60 with .1, .51 with .2.
   double panned_misfit = 0.05;
@@ -89,8 +89,10 @@ struct TrackParameters {
   double thing_group = 0.2;
 
   // Standing.
-  double stand_speed = 0.3;  // S/s. derived: 0.5 m/s
-  double settled = 1.0;      // s of standing from which on the place is compared
+  // S/s. derived: 0.5 m/s. The largest standard deviation, too, of the velocity of a track that goes off-screen: the filter's
+  // is that of what a moving camera follows. swept: .1 to 100. Guard: the IDF1 of bench-moving_window.
+  double stand_speed = 0.3;
+  double settled = 1.0;  // s of standing from which on the place is compared
 
   // Appearance model.
   double appearance_time = 2.0;  // s, time constant. derived: a person turns round within it
@@ -99,6 +101,9 @@ struct TrackParameters {
   // Position of a track within a group by its appearance.
   double found_noise = 0.1;  // S, standard deviation of that position
   double found_brake = 0.5;  // s, time constant of the vertical velocity: appearance determines height poorly
+
+  double covered = 0.2;  // of a box that another track covers: it is not isolated, and may be behind that one
+  double travelled = 0.45;  // S that an object came, at least, which may stop or go off-screen
 
   // Two tracks are two objects.
   double apart = 0.3;  // S that they have come apart at least
