@@ -110,12 +110,11 @@ void name(Numbers n, TrackParameters& p) {
          N(border_wander),
          N(fade),
          N(panned_widens),
-         N(coast_brake),
-         N(off_screen_brake),
+         N(brake),
 
          N(confidence_time),
-         N(same_extent_least),
-         N(same_extent_most),
+         N(same_extent),
+
          N(stride),
          N(gate_noise),
          N(gate),
@@ -124,18 +123,17 @@ void name(Numbers n, TrackParameters& p) {
          N(size_cost),
          N(gate_cost),
          N(border),
-         N(least_visible),
+
          N(cut_margin),
          N(whole),
 
-         N(whole_lasts),
          N(end_speed),
          N(upright),
-         N(camera_still),
+
          N(lasts),
-         N(panned_misfit),
+
          N(extent_known),
-         N(fragment_walk),
+
          N(shared_group),
          N(thing_group),
          N(stand_speed),
@@ -152,26 +150,22 @@ void name(Numbers n, TrackParameters& p) {
 }
 
 void name(Numbers n, LifeCycle::Parameters& p) {
-  n.add({N(least_travel), N(least_hits), N(slow_least_hits), N(slow_confirm), N(confirm_slack), N(hit_share),
-         N(tentative_coast), N(coast_share), N(border_coast), N(certain), N(sliver), N(seen), N(remnant)});
+  n.add({N(least_travel), N(least_hits), N(confirm_slack), N(hit_share), N(coast_share), N(certain),
+         N(sliver), N(seen)});
 }
 
 void name(Numbers n, DataAssociation::Parameters& p) {
-  n.add({N(unmatched),      N(worst),       N(shared),           N(returned_area),
-         N(speed_slack),    N(leap),        N(usual_change),     N(appearance_cost),
-         N(known_cost),     N(known_time),  N(sudden_change),    N(off_screen_change),
-         N(larger),         N(inside),      N(occluded_overlap), N(fragment_inside),
-         N(filled),         N(part_inside), N(common_height),    N(common_rows),
-         N(common_columns), N(slender)});
+  n.add({N(unmatched), N(shared), N(leap), N(usual_change), N(appearance_cost), N(known_cost), N(known_time),
+         N(sudden_change), N(larger), N(inside), N(occluded_overlap)});
 }
 
 void name(Numbers n, RegionAppearances::Parameters& p) {
-  n.add({D(samples), D(rough_samples), N(familiar), N(reach), N(reach_up), N(columns), N(displacement),
-         N(least_reach), N(steps), N(inside)});
+  n.add({D(samples), D(rough_samples), N(familiar), N(reach), N(reach_up), N(displacement), N(least_reach),
+         N(steps), N(inside)});
 }
 
 void name(Numbers n, AppearanceParameters& p) {
-  n.add({N(dark), N(darkest), N(brightest), N(least_pairs), N(keep), N(rebin)});
+  n.add({N(dark), N(brightest)});
 }
 
 #undef D

@@ -87,16 +87,6 @@ START_TEST(an_off_screen_track_comes_before_a_tentative_one_and_has_no_region_wh
 }
 END_TEST
 
-// Twice the area when it left, .25 more than that.
-START_TEST(a_track_comes_back_as_a_region_of_at_most_twice_its_area) {
-  for (const double height : {120.0, 250.0}) {
-    Scene s{{track({100, 100, 40, 100}, OffScreen{})}, {region(100, 100, 40, height)}, {}, {}};
-    for (MovingValue* a : {&s.tracks[0].x, &s.tracks[0].y}) a->pp = 1e4;
-    ck_assert_int_eq(s.associate()[0].region, height > 200 ? -1 : 0);
-  }
-}
-END_TEST
-
 // A fragment of neither extent may be anybody's.
 START_TEST(a_track_comes_back_as_a_region_of_its_height_or_of_its_width) {
   for (const Box& box : {Box{0, 100, 16, 100}, Box{0, 100, 40, 40}, Box{0, 100, 16, 40}}) {
@@ -116,7 +106,7 @@ START_TEST(of_two_tracks_that_may_have_come_back_the_nearer_one_has) {
   for (const bool first : {true, false}) {
     Scene s{{track({first ? 80.0 : 150.0, 100, 60, 150}, OffScreen{}),
              track({first ? 150.0 : 80.0, 100, 60, 150}, OffScreen{})},
-            {region(0, 130, 20, 100)},
+            {region(0, 130, 20, 110)},
             {},
             {}};
     for (TrackHypothesis& t : s.tracks)
@@ -276,8 +266,8 @@ START_TEST(an_object_that_leaps_is_followed_where_nothing_else_can_be_it) {
   ck_assert(!leaps({seen_once, track({250, 100, 40, 30}, Tentative{1, 2})}, {region(175, 100, 40, 30)}));
   ck_assert(!leaps({track({100, 100, 40, 30}, Tentative{1, 3})}, {region(175, 100, 40, 30)}));
   ck_assert(!leaps({track({100, 100, 40, 30})}, {region(175, 100, 40, 30)}));
-  ck_assert(leaps({seen_once}, {region(175, 100, 40, 30)}, 600));  // 75 pixels in .1 s, half of 40 are slack
-  ck_assert(!leaps({seen_once}, {region(175, 100, 40, 30)}, 500));
+  ck_assert(leaps({seen_once}, {region(175, 100, 40, 30)}, 700));  // 75 pixels in .1 s, .15 of 40 are slack
+  ck_assert(!leaps({seen_once}, {region(175, 100, 40, 30)}, 650));
 }
 END_TEST
 
@@ -304,7 +294,6 @@ int main() {
       {each_track_has_the_region_at_its_place_and_what_is_left_is_new,
        a_track_in_view_comes_before_a_tentative_one_that_is_nearer,
        an_off_screen_track_comes_before_a_tentative_one_and_has_no_region_while_it_is_behind_the_camera,
-       a_track_comes_back_as_a_region_of_at_most_twice_its_area,
        a_track_comes_back_as_a_region_of_its_height_or_of_its_width,
        of_two_tracks_that_may_have_come_back_the_nearer_one_has, a_fragment_completes_the_region_of_its_track,
        a_person_like_region_is_neither_a_fragment_nor_completed,

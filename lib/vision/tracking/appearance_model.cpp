@@ -19,12 +19,11 @@ BrightnessLevel::BrightnessLevel(const AppearanceParameters& parameters) : param
 void BrightnessLevel::reset() {
   level_ = 0;
   size_ = {};
-  if (made_for_ != 0) make_bins();
+  make_bins();
 }
 
 void BrightnessLevel::make_bins() {
   const AppearanceParameters& q = parameters_;
-  made_for_ = level_;
   for (int grey = 0; grey < 256; ++grey) {
     const double at = (std::log2(grey * std::exp2(-level_) + q.dark) - kLowest) / (kHighest - kLowest) *
                           AppearanceModel::kBins -
@@ -50,21 +49,21 @@ void BrightnessLevel::update(GrayView luma, const Transform& motion) {
       const Point p = motion.apply(place(i));
       if (!(p.x >= 0 && p.y >= 0 && p.x < luma.width && p.y < luma.height)) continue;
       const int now = grey(static_cast<int>(p.x), static_cast<int>(p.y)), then = before_[i];
-      if (now < q.darkest || now > q.brightest || then < q.darkest || then > q.brightest) continue;
+      if (now == 0 || now > q.brightest || then == 0 || then > q.brightest) continue;
       ratio[count++] = std::log2(static_cast<double>(now) / then);
     }
   }
-  if (count > 0 && count >= q.least_pairs) {
+  if (count > 0) {
     const auto middle = ratio.begin() + count / 2;
     std::nth_element(ratio.begin(), middle, ratio.begin() + count);
-    level_ = q.keep * level_ + *middle;
+    level_ += *middle;
+    make_bins();
   }
   size_ = luma.size();
   for (int i = 0; i < kColumns * kRows; ++i) {
     const Point p = place(i);
     before_[i] = grey(static_cast<int>(p.x), static_cast<int>(p.y));
   }
-  if (std::abs(level_ - made_for_) > q.rebin) make_bins();
 }
 
 bool AppearanceModel::known() const {

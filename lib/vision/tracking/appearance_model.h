@@ -20,11 +20,8 @@ namespace cerberus::vision {
 // Origins: chosen by hand where no other stands. Guard: tests/unit (appearance_model, coats), MOTA 70 on PETS09-S2L1.
 struct AppearanceParameters {
   double dark = 8;  // grey levels added before the logarithm: noise in the dark is no difference
-  int darkest = 12, brightest = 243;  // grey levels between which a pixel is used for the brightness level
-  int least_pairs = 24;               // grid points that the level needs
-  double keep =
-      1 - 1.0 / 2000;   // of the level, each frame: small errors decay. derived: models live for seconds
-  double rebin = 0.02;  // log2 by which the level changes before the bins are computed again
+  int brightest =
+      243;  // grey levels up to which a pixel is used for the brightness level: more may be saturated
 };
 
 // The analysed picture and its foreground mask (not 0), of one size. appearance_of() reads all of a box where the mask
@@ -58,8 +55,7 @@ class BrightnessLevel {
   static constexpr int kColumns = 12, kRows = 9;
   void make_bins();
   AppearanceParameters parameters_;
-  double level_ = 0;     // log2 of the factor
-  double made_for_ = 0;  // that of the bins
+  double level_ = 0;  // log2 of the factor
   Size size_;
   std::array<std::uint8_t, kColumns * kRows> before_{};
   std::array<Bin, 256> bins_;

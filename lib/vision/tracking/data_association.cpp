@@ -38,32 +38,30 @@ DataAssociation::Turn DataAssociation::turn_of(const TrackHypothesis& t) {
 // one.
 bool DataAssociation::side_by_side(const Box& a, const Box& b, const Box& expected) const {
   const double low = std::max(a.y, b.y), high = std::min(a.bottom(), b.bottom());
-  return is_upright(a) && is_upright(b) && high - low > parameters_.common_height * expected.height;
+  return is_upright(a) && is_upright(b) && high - low > parameters_.inside * expected.height;
 }
 
 // Are they fragments, one above the other, of the person whose region this is? A person who walks straight up or down
 // the picture is detected as moving edges (head, waist, feet) before he is detected whole. Two persons in a region have
-// rows in common; where they have not, one far behind the other, both are upright, or the region is too slender.
+// rows in common; where they have not, one far behind the other, both are upright.
 bool DataAssociation::one_above_another(const Box& a, const Box& b, const Box& region) const {
-  const Parameters& q = parameters_;
   const double columns = std::min(a.right(), b.right()) - std::max(a.x, b.x);
   const double rows = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
-  return is_upright(region) && region.height < q.slender * region.width &&
-         rows < q.common_rows * std::min(a.height, b.height) &&
-         columns > q.common_columns * std::min(a.width, b.width) && !(is_upright(a) && is_upright(b));
+  return is_upright(region) && rows < parameters_.inside * std::min(a.height, b.height) &&
+         columns > parameters_.inside * std::min(a.width, b.width) && !(is_upright(a) && is_upright(b));
 }
 
 // Is it small and, all but its rim, inside the other?
 bool DataAssociation::is_part(const TrackHypothesis& part, const TrackHypothesis& whole) const {
   const Box a = part.box(), b = whole.box();
   return a.area() < part.parameters->fragment_area * b.area() &&
-         overlap_area(a, b) > parameters_.part_inside * a.area();
+         overlap_area(a, b) > parameters_.inside * a.area();
 }
 
 // Is an object that has come so far, frame pixels, beyond maximum-speed?
 bool DataAssociation::too_fast(const TrackHypothesis& t, double moved) const {
   return frame_.maximum_speed > 0 &&
-         moved > frame_.maximum_speed * (frame_.seconds + t.unseen) + parameters_.speed_slack * t.size();
+         moved > frame_.maximum_speed * (frame_.seconds + t.unseen) + t.parameters->gate_noise * t.size();
 }
 
 DataAssociation::SameExtents DataAssociation::same_extents(const TrackHypothesis& t, const Box& seen) const {
@@ -73,13 +71,11 @@ DataAssociation::SameExtents DataAssociation::same_extents(const TrackHypothesis
 }
 
 double DataAssociation::pair_cost(const TrackHypothesis& t, std::size_t j) const {
-  const Parameters& q = parameters_;
   const Region& region = regions_[j];
   const auto* returns = std::get_if<OffScreen>(&t.life);
   if (returns && !returns->in_front) return Assignment::kForbidden;
   const double distance = t.distance(region.box, frame_.size);
   if (distance < 0) return Assignment::kForbidden;
-  if (returns && region.box.area() > q.returned_area * t.box().area()) return Assignment::kForbidden;
   if (too_fast(t, distance_between(t, region.box))) return Assignment::kForbidden;
   // Only a region of the track's own extent shows all of it and nothing else. Of a track that comes back the picture's edge
   // may hide a part; a piece of another width and height may be anybody's.
@@ -87,10 +83,8 @@ double DataAssociation::pair_cost(const TrackHypothesis& t, std::size_t j) const
   if (returns && !same.width && !same.height) return Assignment::kForbidden;
   const double appearance = returns || (same.width && same.height) ? appearance_cost(t, j) : 0;
   if (appearance < 0) return Assignment::kForbidden;
-  const double cost = distance + appearance;
-  if (cost <= q.worst || !returns) return std::min(cost, q.worst);
-  // Beyond `worst` the order of those who may have come back is kept: the nearest has.
-  return q.unmatched - (q.unmatched - q.worst) * q.worst / cost;
+  // Of those who may have come back the nearest has, however far.
+  return returns ? distance + appearance : std::min(distance + appearance, parameters_.unmatched);
 }
 
 // Cost of a difference in appearance; negative: another object.
@@ -101,7 +95,7 @@ double DataAssociation::appearance_cost(const TrackHypothesis& t, std::size_t j)
   const double difference = appearance_distance(t.appearance.model, appearances_->of(j));
   // Others come in at the same side meanwhile: of one that walked out nothing may differ.
   if (t.walked_out() && (difference < 0 || difference > q.usual_change)) return -1;
-  if (difference > (returns ? q.off_screen_change : t.appearance.change + q.sudden_change)) return -1;
+  if (difference > (returns ? 0 : t.appearance.change) + q.sudden_change) return -1;
   const double known = returns ? 0 : 1 - std::exp(-t.appearance.learnt / q.known_time);
   return (q.appearance_cost + known * q.known_cost) * std::max(0.0, difference - q.usual_change);
 }
@@ -120,7 +114,7 @@ void DataAssociation::assign(Turn turn) {
     if (turn_of(tracks_[i]) == turn) rows_.push_back(static_cast<int>(i));
   const std::size_t columns = regions_.size();
   if (cost_.size() < rows_.size() * columns) cost_.resize(rows_.size() * columns);
-  unmatched_.assign(rows_.size(), parameters_.unmatched);
+  unmatched_.assign(rows_.size(), turn == Turn::off_screen ? Assignment::kForbidden : parameters_.unmatched);
   for (std::size_t c = 0; c < columns; ++c) {
     double least = Assignment::kForbidden;
     for (std::size_t r = 0; r < rows_.size(); ++r) {
@@ -181,7 +175,7 @@ void DataAssociation::gather_fragments() {
       if (turn_of(tracks_[i]) != Turn::in_view) continue;
       if (match.region >= 0 && is_person_like(regions_[match.region])) continue;
       const Box expected = tracks_[i].box();
-      if (overlap_area(expected, fragment) < q.fragment_inside * fragment.area()) continue;
+      if (overlap_area(expected, fragment) < q.inside * fragment.area()) continue;
       if (match.region < 0) {
         match.region = static_cast<int>(j);
         owner_[j] = static_cast<int>(i);
@@ -251,7 +245,7 @@ void DataAssociation::merge_fragments() {
       filled += overlap_area(tracks_[i].box(), regions_[j].box);
       if (count++ == 0 || tracks_[i].age > tracks_[oldest].age) oldest = i;
     }
-    const bool hollow = filled < parameters_.filled * regions_[j].box.area();
+    const bool hollow = filled < parameters_.inside * regions_[j].box.area();
     const int all = count;
     for (std::size_t i = 0; i < tracks_.size() && all > 1; ++i) {
       const TrackHypothesis &t = tracks_[i], &whole = tracks_[oldest];

@@ -20,13 +20,9 @@ class DataAssociation {
   // and tests/unit (meeting, coats, tracker).
   struct Parameters {
     // Cost of a pair; TrackHypothesis::distance() is about 0 to 2.
-    double unmatched = 2;  // cost of a track without region
-    // The most that a pair costs, but for a track that comes back: below `unmatched`, or two tracks would rather share two
-    // regions that fit neither of them.
-    double worst = 1.99;
-    double shared = 1;         // cost of a track that stays in a blob of several
-    double returned_area = 2;  // times the area when it left that a returning object has at most
-    double speed_slack = 0.5;  // S beyond maximum-speed. derived: a region's centre jumps by half an object
+    // Cost of a track without region, and the most that a pair costs, but for a track that comes back.
+    double unmatched = 2;
+    double shared = 1;  // cost of a track that stays in a blob of several
 
     // S from the first to the second region of an object where nothing else can be it. derived: 2,000 pixels a second at 25
     // frames a second are 1.3 S of an ellipse of 60x40 pixels. Guard: unit fast_object.
@@ -42,30 +38,20 @@ class DataAssociation {
     // for a second may be one side of a person. swept: 0 to 8 and 3 to 8 s. Guard: bench-variants, unit
     // data_association.
     double known_cost = 5.0;
-    double known_time = 5.0;      // s, time constant
-    double sudden_change = 0.45;  // more than the last one by this: another object (shade comes step by step)
-    // The most for a track that comes back into the picture. swept: .35 to .45. Guard: bench-moving_window.
-    double off_screen_change = 0.4;
+    double known_time = 5.0;  // s, time constant
+    // More than the last one by this: another object (shade comes step by step). The most for a track that comes back into the
+    // picture. swept: .35 to .45. Guard: bench-moving_window.
+    double sudden_change = 0.45;
 
     // Blobs of several.
     double larger = 1.3;  // times the area of a track: a region that may hold others
-    double inside = 0.5;  // of a track's area that lies in the blob
+    // Of a track's area that lies in the blob, of a fragment's or a small track's that lies in the box of the track of which it
+    // is a part, of a region's that its tracks fill if they are not fragments of one object, and of the rows and columns
+    // that two boxes have in common. swept: .5 and .6. Guard: bench-development, unit meeting, straight.
+    double inside = 0.5;
     // Intersection over union of an occluded track with the region. swept: .3 to .36, which are
     // equal but for person 11 of bench-in_window.
     double occluded_overlap = 0.33;
-
-    // Fragments.
-    double fragment_inside = 0.6;  // of the fragment's area that lies in the track's box
-    double filled = 0.4;  // of the region that its tracks fill: below it they are fragments of one object
-    double part_inside = 0.6;  // of a small track's area that lies in the other one, of which it is a part
-
-    // Two persons side by side, not two fragments of one.
-    double common_height = 0.6;  // rows in common, of the track's height
-
-    // Two fragments of one person, one above the other.
-    double common_rows = 0.3;     // of the lower one's height, at most
-    double common_columns = 0.8;  // of the narrower one's width, at least
-    double slender = 5;           // height / width of their region, at most
   };
 
   struct Frame {

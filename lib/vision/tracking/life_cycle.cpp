@@ -59,13 +59,13 @@ void LifeCycle::come_back(TrackHypothesis& t, const Box& seen) {
     t.life = Stopped{};
   else
     t.life = Coasted{};
-  t.estimate_whole(seen);
+  t.note_whole();
   t.adopt(seen);
 }
 
 void LifeCycle::resume_stop(TrackHypothesis& t) {
   t.life = Stopped{std::get<OffScreen>(t.life).absent};
-  t.estimate_whole(t.box());
+  t.note_whole();
 }
 
 void LifeCycle::lose(TrackHypothesis& t) {
@@ -108,8 +108,8 @@ bool LifeCycle::is_confirmed(const TrackHypothesis& t) const {
   const Parameters& q = parameters_;
   const Tentative& data = std::get<Tentative>(t.life);
   if (options_.confirm_time <= 0) return true;
-  const bool enough = data.hits >= q.least_hits ||
-                      (data.hits >= q.slow_least_hits && t.age >= q.slow_confirm * options_.confirm_time);
+  const bool enough =
+      data.hits >= q.least_hits || (data.hits > 1 && t.age >= q.least_hits * options_.confirm_time);
   return enough && t.travel.most >= q.least_travel && t.age >= q.confirm_slack * options_.confirm_time &&
          data.hits >= q.hit_share * data.frames;
 }
@@ -118,7 +118,7 @@ bool LifeCycle::is_confirmed(const TrackHypothesis& t) const {
 void LifeCycle::advance_tentative(TrackHypothesis& t) {
   const Parameters& q = parameters_;
   const Tentative& data = std::get<Tentative>(t.life);
-  if (t.unseen > q.tentative_coast * options_.confirm_time && data.hits < q.hit_share * data.frames) lose(t);
+  if (t.unseen > q.hit_share * options_.confirm_time && data.hits < q.hit_share * data.frames) lose(t);
 }
 
 // Stops, or departs when it has been coasted for too long or its centre has left the picture.
@@ -129,7 +129,7 @@ void LifeCycle::advance_coasted(TrackHypothesis& t) {
     return;
   }
   fade(t, options_.coast_time);
-  const double longest = t.at_border(frame_.size) ? parameters_.border_coast * coast_time(t) : coast_time(t);
+  const double longest = t.at_border(frame_.size) ? parameters_.coast_share * coast_time(t) : coast_time(t);
   if (outside(t) || t.unseen > longest) depart(t);
 }
 
@@ -138,7 +138,7 @@ void LifeCycle::advance_stopped(TrackHypothesis& t) {
   fade(t, options_.hold_stopped);
   double& absent = std::get<Stopped>(t.life).absent;
   absent = t.left && !covered(t) ? absent + frame_.seconds : 0;
-  if (outside(t) || t.unseen > options_.hold_stopped || absent > parameters_.border_coast * coast_time(t))
+  if (outside(t) || t.unseen > options_.hold_stopped || absent > parameters_.coast_share * coast_time(t))
     depart(t);
 }
 
@@ -178,7 +178,7 @@ bool LifeCycle::has_stopped(const TrackHypothesis& t) const {
   if (t.slow < of.lasts || t.fit.time < of.extent_known || t.travel.most < of.travelled ||
       t.seen_for() < q.seen || t.uncut.leaving)
     return false;
-  const bool remnant = t.box().area() < q.remnant * t.uncut.width * t.uncut.height;
+  const bool remnant = t.box().area() < of.fragment_area * t.uncut.width * t.uncut.height;
   return !remnant && !t.left && !covered(t);
 }
 

@@ -42,8 +42,7 @@ std::optional<Point> RegionAppearances::find(const TrackHypothesis& track, const
   const double reach = std::min(q.reach * s, 2 * std::sqrt(track.x.pp) + q.least_reach * s);
   const double pixel = static_cast<double>(frame_.width) / input_.luma.width;
   const double step = std::max(box.width / q.steps, pixel), step_up = std::max(reach_up, pixel);
-  const int columns = std::min(static_cast<int>(reach / step), q.columns),
-            rows = static_cast<int>(reach_up / step_up);
+  const int columns = static_cast<int>(reach / step), rows = static_cast<int>(reach_up / step_up);
   std::optional<Point> found;
   double least = q.familiar;
   for (int j = -rows; j <= rows; ++j)

@@ -21,7 +21,6 @@ class RegionAppearances {
     double familiar = 0.35;      // the most that appearance distance and displacement cost together
     double reach = 0.5;          // S to either side that is searched
     double reach_up = 0.05;      // S up and down; small, as coats and legs are of one colour each
-    int columns = 24;            // candidate positions to either side, at most
     double displacement = 0.05;  // cost of the farthest position to the side; twice as much up or down
     double least_reach = 0.1;    // S, added to two standard deviations of the position
     double steps = 6;            // candidate positions in the width of a box

@@ -22,10 +22,7 @@ void TrackHypothesis::correct(const Region& region, bool alone, double seconds, 
   take_kind(region.kind, alone, how.fits, seconds);
   if (!alone && !match.occluded && !how.stays) shrink_into(seen);
   if (!how.cut()) uncut.velocity = {x.velocity, y.velocity};
-  if (!how.at_edge && alone && fit.misfit == 0) {
-    uncut.whole = box();
-    uncut.since = 0;
-  }
+  if (!how.at_edge && alone && fit.misfit == 0) note_whole();
   uncut.width = std::max(uncut.width, width());
   uncut.height = std::max(uncut.height, height());
   note_seen(region.confidence, before, seconds);
@@ -101,10 +98,9 @@ bool TrackHypothesis::outgrown(const Region& region, bool cut, double seconds) {
   if (is_person_like(region)) return kind != RegionKind::person_like || fit.misfit >= q.lasts;
   if (seen.area() > box().area()) return fit.misfit >= q.lasts;
   // While the camera moves a smaller region is believed in its second frame.
-  if (camera_moved ? fit.misfit < q.panned_misfit || fit.misfit <= seconds : fit.misfit < q.lasts)
-    return false;
+  if (camera_moved ? fit.misfit <= seconds : fit.misfit < q.lasts) return false;
   const double gone = std::hypot(centre(seen).x - fit.misfit_from.x, centre(seen).y - fit.misfit_from.y);
-  return !fit.was_still || fit.time < q.extent_known || gone > q.fragment_walk * size();
+  return !fit.was_still || fit.time < q.extent_known || gone > q.travelled * size();
 }
 
 void TrackHypothesis::adopt(const Box& seen) {

@@ -24,7 +24,7 @@ constexpr double kHalfPixel = 0.5;  // boxes count from pixels' corners, transfo
 Residual compare_extents(double expected_from, double expected_to, double from, double to,
                          const TrackParameters& parameters) {
   const double extent = expected_to - expected_from, seen = to - from;
-  if (seen > parameters.same_extent_least * extent && seen < parameters.same_extent_most * extent)
+  if (seen * parameters.same_extent > extent && seen < parameters.same_extent * extent)
     return {(from + to - expected_from - expected_to) / 2, true};
   const double low = from - expected_from, high = to - expected_to;
   if (seen <= extent) return {low < 0 ? low : std::max(high, 0.0), false};
@@ -53,10 +53,9 @@ Box TrackHypothesis::box() const {
 
 Box TrackHypothesis::visible(Size frame) const {
   const Box b = box();
-  const double least = parameters->least_visible;
   const double x0 = std::max(b.x, 0.0), y0 = std::max(b.y, 0.0);
   const double x1 = std::min<double>(b.right(), frame.width), y1 = std::min<double>(b.bottom(), frame.height);
-  if (x1 - x0 < least * b.width || y1 - y0 < least * b.height) return b;
+  if (!(x1 > x0 && y1 > y0)) return b;
   return {x0, y0, x1 - x0, y1 - y0};
 }
 
@@ -82,7 +81,6 @@ bool TrackHypothesis::predict(double seconds, bool camera_moves) {
   age += seconds;
   if (auto* data = std::get_if<Tentative>(&life)) ++data->frames;
   match = {};
-  uncut.since += seconds;
   return std::isfinite(x.position) && std::isfinite(y.position);
 }
 
@@ -91,7 +89,7 @@ void TrackHypothesis::magnify(double scale) {
   for (MovingValue* a : {&x, &y})
     for (double* p : {&a->pp, &a->pv, &a->vv}) *p *= scale * scale;
   for (double* e : {&w.value, &h.value, &travel.log_width, &travel.log_height}) *e += std::log(scale);
-  for (double* l : {&uncut.width, &uncut.height, &uncut.whole.width, &uncut.whole.height, &travel.top_rise,
+  for (double* l : {&uncut.width, &uncut.height, &uncut.whole_width, &uncut.whole_height, &travel.top_rise,
                     &travel.bottom_drop})
     *l *= scale;
 }
@@ -130,7 +128,7 @@ bool TrackHypothesis::carry(const Transform& motion, Size frame) {
   const double bottom = motion.apply({p.x, last.bottom() - kHalfPixel}).y,
                end = motion.apply({last.right() - kHalfPixel, p.y}).x;
   last = {left + kHalfPixel, top + kHalfPixel, end - left, bottom - top};
-  if (std::hypot(q.x - p.x, q.y - p.y) > parameters->camera_still * frame.width)
+  if (std::hypot(q.x - p.x, q.y - p.y) > parameters->grain * frame.width)
     travel.top_rise = travel.bottom_drop = 0;
   const Point velocity = turned({x.velocity, y.velocity});
   x.position = q.x + kHalfPixel;
@@ -138,10 +136,7 @@ bool TrackHypothesis::carry(const Transform& motion, Size frame) {
   x.velocity = velocity.x;
   y.velocity = velocity.y;
   uncut.velocity = turned(uncut.velocity);
-  const Point whole = motion.apply({centre(uncut.whole).x - kHalfPixel, centre(uncut.whole).y - kHalfPixel});
   magnify(std::sqrt(det));
-  uncut.whole.x = whole.x + kHalfPixel - uncut.whole.width / 2;
-  uncut.whole.y = whole.y + kHalfPixel - uncut.whole.height / 2;
   for (Point* place : {&travel.origin, &fit.misfit_from}) *place = motion.apply(*place);
   return true;
 }
@@ -172,8 +167,6 @@ void TrackHypothesis::predict_off_screen(double seconds, const CameraOrientation
   y.position = seen ? seen->y : before.y;
   travel.origin.x += x.position - before.x;
   travel.origin.y += y.position - before.y;
-  uncut.whole.x += x.position - before.x;
-  uncut.whole.y += y.position - before.y;
   const double now = camera.magnification(direction), scale = now / data.magnification;
   data.magnification = now;
   for (double* v : {&x.velocity, &y.velocity, &uncut.velocity.x, &uncut.velocity.y}) *v *= scale;
@@ -187,29 +180,20 @@ bool TrackHypothesis::expected_in(Size frame) const {
 }
 
 void TrackHypothesis::restore_whole() {
-  const TrackParameters& q = *parameters;
-  const Point whole = centre(uncut.whole);
-  const bool known = uncut.whole.area() > 0 && std::isfinite(whole.x + whole.y);
   if (uncut.leaving) {
-    w.value = std::log(known ? uncut.whole.width : uncut.width);
-    h.value = std::log(known ? uncut.whole.height : uncut.height);
-  }
-  if (uncut.leaving && known && uncut.since < q.whole_lasts) {
-    x.position = whole.x + x.velocity * uncut.since;
-    y.position = whole.y + y.velocity * uncut.since;
+    const bool known = uncut.whole_width > 0;
+    w.value = std::log(known ? uncut.whole_width : uncut.width);
+    h.value = std::log(known ? uncut.whole_height : uncut.height);
   }
   for (MovingValue* a : {&x, &y}) {
-    a->vv = std::min(a->vv, square(q.stand_speed * size()));
+    a->vv = std::min(a->vv, square(parameters->stand_speed * size()));
     a->pv = 0;
   }
 }
 
-void TrackHypothesis::estimate_whole(const Box& seen) {
-  const Box b = box();
-  uncut.whole = {b.x + compare_extents(b.x, b.right(), seen.x, seen.right(), *parameters).distance,
-                 b.y + compare_extents(b.y, b.bottom(), seen.y, seen.bottom(), *parameters).distance, b.width,
-                 b.height};
-  uncut.since = 0;
+void TrackHypothesis::note_whole() {
+  uncut.whole_width = width();
+  uncut.whole_height = height();
 }
 
 double TrackHypothesis::distance(const Box& seen, Size frame) const {
@@ -232,8 +216,7 @@ double TrackHypothesis::distance(const Box& seen, Size frame) const {
 }
 
 void TrackHypothesis::miss(double seconds) {
-  const double time = is(TrackPhase::off_screen) ? parameters->off_screen_brake : parameters->coast_brake;
-  const double brake = std::exp(-seconds / time);
+  const double brake = std::exp(-seconds / parameters->brake);
   unseen += seconds;
   in_group = 0;
   x.velocity *= brake;

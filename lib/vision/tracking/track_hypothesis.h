@@ -88,12 +88,10 @@ struct TrackHypothesis {
   };
   // What is known of it from where the picture's edges did not cut it.
   struct Uncut {
-    double width = 0, height = 0;  // the largest extent so far, frame pixels
-    Point velocity;                // frame pixels a second, when last seen so
-    bool leaving = false;          // the picture's edge cut it when last seen
-    // Its box when last seen so, or as estimated when it came back, carried with the scene; no area: not yet.
-    Box whole;
-    double since = 0;  // s since then
+    double width = 0, height = 0;              // the largest extent so far, frame pixels
+    double whole_width = 0, whole_height = 0;  // when last seen so, or when it came back; 0: not yet
+    Point velocity;                            // frame pixels a second, when last seen so
+    bool leaving = false;                      // the picture's edge cut it when last seen
   };
   // How long regions have had its extent, and since when the last ones have had another.
   struct Fit {
@@ -163,7 +161,7 @@ struct TrackHypothesis {
   double speed() const { return std::hypot(x.velocity, y.velocity); }
   double seen_for() const { return age - unseen; }  // s from first to last seen
   Box box() const;
-  // The part of the box inside the frame; all of it where that part is next to nothing.
+  // The part of the box inside the frame; all of it where that part is nothing.
   Box visible(Size frame) const;
   bool at_border(Size frame) const;
 
@@ -177,11 +175,11 @@ struct TrackHypothesis {
   // All of an off-screen track should be in the picture.
   bool expected_in(Size frame) const;
 
-  // As it leaves the picture, cut by its edge: restores the extent that it had when last seen whole and, where that was a
-  // moment ago, the place where it should be by now. Limits the velocity's variance.
+  // As it leaves the picture, cut by its edge: restores the extent that it had when last seen whole. Limits the velocity's
+  // variance.
   void restore_whole();
-  // As it comes back: takes the region for all or a part of the expected box, and that box for the whole one.
-  void estimate_whole(const Box& seen);
+  // It has this extent where nothing cuts it.
+  void note_whole();
 
   // Cost of a region: 0 fits perfectly; negative: outside the validation gate.
   double distance(const Box& seen, Size frame) const;

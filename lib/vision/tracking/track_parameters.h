@@ -33,17 +33,14 @@ struct TrackParameters {
   // 1 to 4. Guard: unit track_hypothesis (1), the skier's share in bench-quality (from 2.5 on), the
   // player's width in bench-development (1 on Debian 13).
   double panned_widens = 1.5;
-  // s, time constant in which a coasted track slows down. swept: .6 to 2.5. Guard: person 1 of
+  // s, time constant in which a track without region slows down. swept: .6 to 2.5. Guard: person 1 of
   // bench-in_window, who is lost with 1.
-  double coast_brake = 0.8;
-  double off_screen_brake = 3.0;  // s, the same while the track is off-screen
-  double confidence_time = 0.5;   // s, time constant of the confidence
+  double brake = 0.8;
+  double confidence_time = 0.5;  // s, time constant of the confidence
 
-  // Extents that agree, seen / expected.
-  double same_extent_least = 0.65, same_extent_most = 1.5;
+  double same_extent = 1.5;  // times by which extents that agree differ at most
   // Heights. A region that only this track has, as high as the track, wider than it and narrower than this, is of the same
-  // extent: a walker in mid-stride. Narrower again it is so by same_extent_least only: half of a person dissolves sooner
-  // than a stride ends. derived: a stride is .43 of the height, a foot .15. swept: 0 to .75.
+  // extent: a walker in mid-stride. Narrower again it is so by same_extent only: half of a person dissolves sooner than a stride ends. derived: a stride is .43 of the height, a foot .15. swept: 0 to .75.
   double stride = 0.65;
 
   // Validation gate and pair cost.
@@ -56,31 +53,22 @@ struct TrackParameters {
   double gate_cost = 0.1;      // per standard deviation
 
   // Picture's edge.
-  double border = 0.1;         // S, distance that still counts as at the edge
-  double least_visible = 0.1;  // of each extent; a smaller rest of the box is not worth cutting to
-  double cut_margin = 0.01;    // of the picture's side: a region this close to the edge is cut by it,
+  double border = 0.1;       // S, distance that still counts as at the edge
+  double cut_margin = 0.01;  // of the picture's side: a region this close to the edge is cut by it,
   // Of the side: unless the object fills the picture from edge to edge. Of the largest extent so far: a cut region below it
   // is leaving the picture.
   double whole = 0.7;
-  // s, and its place is where it should be by now if it was seen whole since. swept: .5 to 10.
-  double whole_lasts = 2.0;
 
   // Growth: what shows that an object moves although its centre does not.
   double end_speed = 1.0;  // S/s of an end of the box; a faster one reveals more of a partly seen object
   double upright = 1.3;    // height / width, at least, of an upright person
-  double camera_still =
-      0.5 / 320;  // of the frame's width. derived: half an analysed pixel of registration error
 
   // s for which something must last until it counts: a region of another extent until it replaces the track's, tracks in one
   // region until they are merged, standing until the object stops, and being occluded until the track is not published.
   // measured: by one value in place of .2, .25 and .4 s for persons, larger and smaller regions MOTA is .55 +- .35 and IDF1
   // .49 +- .20 higher. Guard: bench-development, bench-steady.
   double lasts = 0.3;
-  // s, of a smaller region while the camera moves, and two frames at least: what is followed there turns and goes away
-  // quickly. swept: the skier of otb_Skiing is found in .65 of the frames with .05, .60 with .1, .51 with .2.
-  double panned_misfit = 0.05;
-  double extent_known = 0.5;   // s of fitting regions from which on the extent is well known
-  double fragment_walk = 0.5;  // S that a fragment of a standing object moves before it replaces the object
+  double extent_known = 0.5;  // s of fitting regions from which on the extent is well known
   // s for which a track has shared a group's region, or its own region was a group, and from which on it is of that kind.
   // swept: .3 to 1.4.
   double shared_group = 1.0;
@@ -103,7 +91,9 @@ struct TrackParameters {
   double found_brake = 0.5;  // s, time constant of the vertical velocity: appearance determines height poorly
 
   double covered = 0.2;  // of a box that another track covers: it is not isolated, and may be behind that one
-  double travelled = 0.45;  // S that an object came, at least, which may stop or go off-screen
+  // S that an object came, at least, which may stop or go off-screen, and that a fragment of a standing object moves before it
+  // replaces the object.
+  double travelled = 0.45;
 
   // Two tracks are two objects.
   double apart = 0.3;  // S that they have come apart at least
