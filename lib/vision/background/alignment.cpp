@@ -43,68 +43,17 @@ Solution solve(System& m) {
   return p;
 }
 
-// The unknowns' factors are powers of a block's place, in half widths from the centre:
+// Adds a block's share of J^T W J and, in the last column, of -J^T W e. x, y: its place in half widths from the centre:
 // u = p0 + p1 x + p2 y + x (p6 x + p7 y), v = p3 + p4 x + p5 y + y (p6 x + p7 y).
-struct Power {
-  int unknown, x, y;
-};
-constexpr std::array<Power, 5> kAcross{{{0, 0, 0}, {1, 1, 0}, {2, 0, 1}, {6, 2, 0}, {7, 1, 1}}};
-constexpr std::array<Power, 5> kDown{{{3, 0, 0}, {4, 1, 0}, {5, 0, 1}, {6, 1, 1}, {7, 0, 2}}};
-
-// Weighted sums over one row of blocks, times powers of x.
-constexpr int kPowers = 5;
-struct RowMoments {
-  std::array<double, kPowers> xx{}, xy{}, yy{}, xe{}, ye{};
-
-  void add(const BlockSums& b, double x, double weight) {
-    const double quarter = 0.25 * weight, half = 0.5 * weight;  // of doubled gradients
-    add(xx, kPowers, quarter * b.xx, x);
-    add(xy, kPowers - 1, quarter * b.xy, x);
-    add(yy, 3, quarter * b.yy, x);
-    add(xe, 3, half * b.xe, x);
-    add(ye, 2, half * b.ye, x);
+void add(System& m, const BlockSums& b, double weight, double x, double y) {
+  const Solution across{1, x, y, 0, 0, 0, x * x, x * y}, down{0, 0, 0, 1, x, y, x * y, y * y};
+  const double quarter = 0.25 * weight, half = 0.5 * weight;  // of doubled gradients
+  for (int i = 0; i < kUnknowns; ++i) {
+    const double by_u = quarter * (b.xx * across[i] + b.xy * down[i]),
+                 by_v = quarter * (b.xy * across[i] + b.yy * down[i]);
+    for (int j = 0; j < kUnknowns; ++j) m[i][j] += by_u * across[j] + by_v * down[j];
+    m[i][kUnknowns] -= half * (b.xe * across[i] + b.ye * down[i]);
   }
-
- private:
-  static void add(std::array<double, kPowers>& sums, int powers, double value, double x) {
-    for (int i = 0; i < powers; ++i, value *= x) sums[i] += value;
-  }
-};
-
-// The same over all rows, [power of x][power of y].
-struct Moments {
-  using Sums = std::array<std::array<double, kPowers>, kPowers>;
-  Sums xx{}, xy{}, yy{}, xe{}, ye{};
-
-  void add(const RowMoments& row, double y) {
-    add(xx, row.xx, y), add(xy, row.xy, y), add(yy, row.yy, y), add(xe, row.xe, y), add(ye, row.ye, y);
-  }
-
- private:
-  static void add(Sums& sums, const std::array<double, kPowers>& row, double y) {
-    for (int i = 0; i < kPowers; ++i) {
-      double value = row[i];
-      for (int j = 0; i + j < kPowers; ++j, value *= y) sums[i][j] += value;
-    }
-  }
-};
-
-// J^T W J and -J^T W e.
-System normal_equations(const Moments& moments) {
-  System m{};
-  for (const Power& i : kAcross) {
-    for (const Power& j : kAcross) m[i.unknown][j.unknown] += moments.xx[i.x + j.x][i.y + j.y];
-    for (const Power& j : kDown) {
-      m[i.unknown][j.unknown] += moments.xy[i.x + j.x][i.y + j.y];
-      m[j.unknown][i.unknown] += moments.xy[i.x + j.x][i.y + j.y];
-    }
-    m[i.unknown][kUnknowns] -= moments.xe[i.x][i.y];
-  }
-  for (const Power& i : kDown) {
-    for (const Power& j : kDown) m[i.unknown][j.unknown] += moments.yy[i.x + j.x][i.y + j.y];
-    m[i.unknown][kUnknowns] -= moments.ye[i.x][i.y];
-  }
-  return m;
 }
 
 }  // namespace
@@ -118,25 +67,19 @@ std::optional<Transform> align_to_background(std::span<const BlockSums> blocks, 
   const std::size_t across = static_cast<std::size_t>(columns);
   Solution p{};
   for (int round = 0; round < kParameters.rounds; ++round) {
-    Moments moments;
-    for (std::size_t first = 0; first + across <= blocks.size(); first += across) {
-      RowMoments row;
-      const double y = place(first / across, cy);
-      const double u0 = p[0] + y * p[2], u1 = p[1] + y * p[7], u2 = p[6];
-      const double v0 = p[3] + y * (p[5] + y * p[7]), v1 = p[4] + y * p[6];
-      for (std::size_t bx = 0; bx < across; ++bx) {
-        const BlockSums& b = blocks[first + bx];
-        if (b.n < kParameters.least_pixels) continue;
-        const double x = place(bx, cx);
-        // The sums hold doubled gradients: half the displacement goes with them.
-        const double u = 0.5 * (u0 + x * (u1 + x * u2)), v = 0.5 * (v0 + x * v1);
-        const double left = b.ee + u * (2.0 * b.xe + u * b.xx + 2 * v * b.xy) + v * (2.0 * b.ye + v * b.yy);
-        const double cauchy = b.n / (kParameters.scale * b.n + std::max(left, 0.0));
-        row.add(b, x, cauchy * cauchy);
-      }
-      moments.add(row, y);
+    System m{};
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const BlockSums& b = blocks[i];
+      if (b.n < kParameters.least_pixels) continue;
+      const double x = place(i % across, cx), y = place(i / across, cy);
+      // The sums hold doubled gradients: half the displacement goes with them.
+      const double bend = x * p[6] + y * p[7];
+      const double u = 0.5 * (p[0] + x * (p[1] + bend) + y * p[2]),
+                   v = 0.5 * (p[3] + x * p[4] + y * (p[5] + bend));
+      const double left = b.ee + u * (2.0 * b.xe + u * b.xx + 2 * v * b.xy) + v * (2.0 * b.ye + v * b.yy);
+      const double cauchy = b.n / (kParameters.scale * b.n + std::max(left, 0.0));
+      add(m, b, cauchy * cauchy, x, y);
     }
-    System m = normal_equations(moments);
     double strongest = 0;
     for (int i = 0; i < kUnknowns; ++i) strongest = std::max(strongest, m[i][i]);
     for (int i = 0; i < kUnknowns; ++i)
