@@ -106,10 +106,10 @@ void name(Numbers n, TrackParameters& p) {
          N(grain),
          N(blob_noise),
          N(size_noise),
-         N(size_wander),
+
          N(border_wander),
          N(fade),
-         N(panned_widens),
+
          N(brake),
 
          N(confidence_time),
@@ -125,7 +125,6 @@ void name(Numbers n, TrackParameters& p) {
          N(border),
 
          N(cut_margin),
-         N(whole),
 
          N(end_speed),
          N(upright),
@@ -134,19 +133,17 @@ void name(Numbers n, TrackParameters& p) {
 
          N(extent_known),
 
-         N(shared_group),
          N(thing_group),
          N(stand_speed),
          N(settled),
          N(appearance_time),
          N(appearance_frames),
          N(found_noise),
-         N(found_brake),
+
          N(apart),
          N(different),
          N(covered),
-         N(travelled),
-         N(crossing)});
+         N(travelled)});
 }
 
 void name(Numbers n, LifeCycle::Parameters& p) {
@@ -165,7 +162,7 @@ void name(Numbers n, RegionAppearances::Parameters& p) {
 }
 
 void name(Numbers n, AppearanceParameters& p) {
-  n.add({N(dark), N(brightest)});
+  n.add({N(dark)});
 }
 
 #undef D

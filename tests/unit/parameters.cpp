@@ -112,7 +112,7 @@ START_TEST(a_wrong_assignment_changes_nothing_and_the_error_lists_the_names) {
   } wrong[] = {
       {"track.gates=3", "no number is named \"track.gates\"", " track.gate "},
       {"tracks.gate=3", "no number is named \"tracks.gate\"", " regions.least_share "},
-      {"gate=3", "no number is named \"gate\"", " appearance.brightest"},
+      {"gate=3", "no number is named \"gate\"", " appearance.dark"},
       {"track.gate", "\"track.gate\" is not stage.name=value", " track.gate_noise "},
       {"", "\"\" is not stage.name=value", " life.seen "},
       {"track.gate=", "track.gate takes a number, not \"\"", " track.gate "},

@@ -37,7 +37,6 @@ void BrightnessLevel::make_bins() {
 
 // The median change of grid points carried with the scene: people cover few of them.
 void BrightnessLevel::update(GrayView luma, const Transform& motion) {
-  const AppearanceParameters& q = parameters_;
   std::array<double, kColumns * kRows> ratio;
   int count = 0;
   const auto place = [&](int i) {
@@ -49,7 +48,7 @@ void BrightnessLevel::update(GrayView luma, const Transform& motion) {
       const Point p = motion.apply(place(i));
       if (!(p.x >= 0 && p.y >= 0 && p.x < luma.width && p.y < luma.height)) continue;
       const int now = grey(static_cast<int>(p.x), static_cast<int>(p.y)), then = before_[i];
-      if (now == 0 || now > q.brightest || then == 0 || then > q.brightest) continue;
+      if (now == 0 || then == 0) continue;
       ratio[count++] = std::log2(static_cast<double>(now) / then);
     }
   }

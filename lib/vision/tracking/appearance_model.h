@@ -20,8 +20,6 @@ namespace cerberus::vision {
 // Origins: chosen by hand where no other stands. Guard: tests/unit (appearance_model, coats), MOTA 70 on PETS09-S2L1.
 struct AppearanceParameters {
   double dark = 8;  // grey levels added before the logarithm: noise in the dark is no difference
-  int brightest =
-      243;  // grey levels up to which a pixel is used for the brightness level: more may be saturated
 };
 
 // The analysed picture and its foreground mask (not 0), of one size. appearance_of() reads all of a box where the mask

@@ -199,7 +199,7 @@ void DataAssociation::gather_fragments() {
 bool DataAssociation::occludes(const TrackHypothesis& front, const TrackHypothesis& t,
                                const Box& region) const {
   return turn_of(front) == Turn::in_view && t.has_appearance() &&
-         t.shared.unlocated < t.parameters->crossing && (look_different(t, front) || went_apart(t, front)) &&
+         (look_different(t, front) || went_apart(t, front)) &&
          intersection_over_union(t.visible(frame_.size), region) > parameters_.occluded_overlap;
 }
 

@@ -222,7 +222,7 @@ std::optional<TrackState> LifeCycle::published(const TrackHypothesis& t) const {
   if (t.match.occluded && t.shared.unlocated > t.parameters->lasts) return {};
   if (is_sliver(t)) return {};
   if (t.is(TrackPhase::confirmed)) return TrackState::seen;
-  if (!t.in_view() || t.shared.unlocated >= t.parameters->crossing) return {};
+  if (!t.in_view()) return {};
   if (t.is(TrackPhase::stopped)) return TrackState::stopped;
   // A coasted track: while its position is certain; away from the picture's edge, where it probably has left; if it was
   // seen for long enough not to be noise; and if it is not a piece of a person, who may have left it behind.

@@ -8,8 +8,7 @@ void TrackHypothesis::correct(const Region& region, bool alone, double seconds, 
   const Box& seen = region.box;
   const Comparison how = compare(seen, alone && region.kind != RegionKind::group, frame);
   const double before = size();
-  uncut.leaving = (how.cut_x && seen.width < parameters->whole * uncut.width) ||
-                  (how.cut_y && seen.height < parameters->whole * uncut.height);
+  uncut.leaving = (how.cut_x && seen.width < uncut.width) || (how.cut_y && seen.height < uncut.height);
   if (!how.fits && alone && outgrown(region, how.cut(), seconds)) {
     replace_extent(seen, how.cut());
   } else if (found) {
@@ -37,8 +36,8 @@ void TrackHypothesis::take_kind(RegionKind seen, bool alone, bool fits, double s
   in_group = group ? in_group + seconds : 0;
   since_person = alone && seen == RegionKind::person_like ? 0 : since_person + seconds;
   if (alone && !group) kind = seen;
-  const bool thing = kind == RegionKind::thing && since_person >= parameters->shared_group;
-  const double least = thing ? parameters->thing_group : parameters->shared_group;
+  const bool thing = kind == RegionKind::thing && since_person >= parameters->settled;
+  const double least = thing ? parameters->thing_group : parameters->settled;
   const bool own = (alone || fits) && in_group >= least;
   const bool within = !alone && shared.time + seconds >= least;
   if (group && (own || within)) kind = seen;
@@ -76,7 +75,7 @@ TrackHypothesis::Comparison TrackHypothesis::compare(const Box& seen, bool alone
 // Does the picture's edge cut a region off? Not the ends of an object that fills the picture from side to side.
 bool TrackHypothesis::is_cut(double from, double to, double largest, int side) const {
   const double margin = parameters->cut_margin * side;
-  return (from < margin || to > side - margin) && largest < parameters->whole * side;
+  return (from < margin || to > side - margin) && largest < side;
 }
 
 // One object, one region, extents that disagree: does the region's extent replace the track's?
@@ -130,7 +129,7 @@ void TrackHypothesis::move_to(const Point& found, double seconds) {
   const double variance = square(parameters->found_noise * size());
   x.correct(found.x, variance);
   y.correct(found.y, variance);
-  y.velocity *= std::exp(-seconds / parameters->found_brake);
+  y.velocity *= std::exp(-seconds / parameters->brake);
 }
 
 // By the residual. A smaller region within the expected box is no distance travelled of a tentative track.
@@ -161,15 +160,13 @@ void TrackHypothesis::refine_extent(const Box& seen, const Comparison& how, doub
 }
 
 // A person who stands dissolves from the mask piece by piece without getting smaller; an object that the picture's edge
-// cuts shows more or less of itself with every frame. While the camera moves, a region that is wider than the track counts
-// more: a lunge is over in half a second, and a narrower region may have lost a limb.
+// cuts shows more or less of itself with every frame.
 void TrackHypothesis::resize(SlowValue& extent, double seen, bool is_cut, double seconds) {
   const TrackParameters& q = *parameters;
   const double measured = std::log(seen);
   const bool fades = !is_cut && speed() < q.stand_speed * size() && measured < extent.value;
-  const bool widens = camera_moved && &extent == &w && measured > extent.value;
   if (is_cut) extent.variance += q.border_wander * seconds;
-  extent.correct(measured, square(q.size_noise) * (fades ? q.fade : widens ? 1 / q.panned_widens : 1));
+  extent.correct(measured, square(q.size_noise) * (fades ? q.fade : 1));
 }
 
 // An end that goes on steadily is a walker's. One that jumps reveals more of the object.

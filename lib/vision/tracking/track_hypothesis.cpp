@@ -77,7 +77,7 @@ bool TrackHypothesis::predict(double seconds, bool camera_moves) {
     const double faster = std::max(1.0, speed() / (q.fast * s));
     for (MovingValue* a : {&x, &y}) a->predict(seconds, acceleration * square(faster * s));
   }
-  for (SlowValue* e : {&w, &h}) e->predict(seconds, q.size_wander);
+  for (SlowValue* e : {&w, &h}) e->predict(seconds, square(q.size_noise));
   age += seconds;
   if (auto* data = std::get_if<Tentative>(&life)) ++data->frames;
   match = {};

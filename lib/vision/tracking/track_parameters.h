@@ -24,16 +24,14 @@ struct TrackParameters {
   double position_noise = 0.05;  // S, standard deviation of a region's centre
   double grain = 1.0 / 320;      // of the frame's width. derived: a pixel of the analysed picture, 320 wide
   double blob_noise = 6;         // times: variance of a position from a blob of another extent
-  double size_noise = 0.15;      // of the logarithm, standard deviation of a region's extent
-  double size_wander = 0.15 * 0.15;  // 1/s. derived: a person's extent changes by 15 % in a second
+  // Of the logarithm of an extent, standard deviation of a region's and of its change in a second. derived: a person's extent
+  // changes by 15 % in a second.
+  double size_noise = 0.15;
   double border_wander = 1.5 * 1.5;  // 1/s, of an extent that the picture's edge cuts
   // Times less that a shrinking extent counts for a standing object. swept: 1 to 20.
   double fade = 2.0;
-  // Factor on the weight, the inverse variance, of a region that is wider than the track while the camera moves. swept:
-  // 1 to 4. Guard: unit track_hypothesis (1), the skier's share in bench-quality (from 2.5 on), the
-  // player's width in bench-development (1 on Debian 13).
-  double panned_widens = 1.5;
-  // s, time constant in which a track without region slows down. swept: .6 to 2.5. Guard: person 1 of
+  // s, time constant in which a track without region slows down, and in which the vertical velocity of one does that is found in
+  // a group by its appearance, which determines height poorly. swept: .6 to 2.5. Guard: person 1 of
   // bench-in_window, who is lost with 1.
   double brake = 0.8;
   double confidence_time = 0.5;  // s, time constant of the confidence
@@ -54,10 +52,7 @@ struct TrackParameters {
 
   // Picture's edge.
   double border = 0.1;       // S, distance that still counts as at the edge
-  double cut_margin = 0.01;  // of the picture's side: a region this close to the edge is cut by it,
-  // Of the side: unless the object fills the picture from edge to edge. Of the largest extent so far: a cut region below it
-  // is leaving the picture.
-  double whole = 0.7;
+  double cut_margin = 0.01;  // of the picture's side: a region this close to the edge is cut by it
 
   // Growth: what shows that an object moves although its centre does not.
   double end_speed = 1.0;  // S/s of an end of the box; a faster one reveals more of a partly seen object
@@ -69,10 +64,10 @@ struct TrackParameters {
   // .49 +- .20 higher. Guard: bench-development, bench-steady.
   double lasts = 0.3;
   double extent_known = 0.5;  // s of fitting regions from which on the extent is well known
-  // s for which a track has shared a group's region, or its own region was a group, and from which on it is of that kind.
-  // swept: .3 to 1.4.
-  double shared_group = 1.0;
-  // s, the same of a track of kind `thing` that was not person-like for shared_group. swept: 0 to 1. Guard:
+  // s for which a track has shared a group's region, or its own region was a group, and from which on it is of that kind. swept:
+  // .3 to 1.4. And s of standing from which on the place is compared.
+  double settled = 1.0;
+  // s, the first of a track of kind `thing` that was not person-like for `settled`. swept: 0 to 1. Guard:
   // unit track_hypothesis.
   double thing_group = 0.2;
 
@@ -80,7 +75,6 @@ struct TrackParameters {
   // S/s. derived: 0.5 m/s. The largest standard deviation, too, of the velocity of a track that goes off-screen: the filter's
   // is that of what a moving camera follows. swept: .1 to 100. Guard: the IDF1 of bench-moving_window.
   double stand_speed = 0.3;
-  double settled = 1.0;  // s of standing from which on the place is compared
 
   // Appearance model.
   double appearance_time = 2.0;  // s, time constant. derived: a person turns round within it
@@ -88,7 +82,6 @@ struct TrackParameters {
 
   // Position of a track within a group by its appearance.
   double found_noise = 0.1;  // S, standard deviation of that position
-  double found_brake = 0.5;  // s, time constant of the vertical velocity: appearance determines height poorly
 
   double covered = 0.2;  // of a box that another track covers: it is not isolated, and may be behind that one
   // S that an object came, at least, which may stop or go off-screen, and that a fragment of a standing object moves before it
@@ -100,7 +93,6 @@ struct TrackParameters {
   // Appearance distance. measured: between .28 (the same person, one of ten) and .36 (two persons, median), lower as both
   // are averages.
   double different = 0.25;
-  double crossing = 3;  // s that they may overlap while they cross
 };
 
 }  // namespace cerberus::vision

@@ -37,7 +37,7 @@ struct Track {
   double age = 0;  // s since first seen
   double confidence = 0;  // 0..1
   TrackState state = TrackState::seen;
-  // Of the region that it was last seen in alone; a group's where that lasts (TrackParameters::shared_group).
+  // Of the region that it was last seen in alone; a group's where that lasts (TrackParameters::settled).
   RegionKind kind = RegionKind::person_like;
   // Which witnesses it has: motion, and a person detector (EvidenceTracker).
   bool motion = true, person = false;
