@@ -339,6 +339,12 @@ GST_START_TEST(sensors_are_invalid_while_their_module_warms_up) {
     bool detects = false;
     for (const CerberusPir& pir : outcome.readings) detects = detects || pir.sensors[0] == 1;
     fail_unless(detects, "%s", preset);
+    Outcome nobody;
+    run("patrolsimsrc people=0 num-buffers=" + std::to_string(seconds * 5 + 20) + " pir-preset=" + preset +
+            " pir-bearings=0 " + kStands + " ! video/x-raw,width=32,height=24,framerate=5/1" + kSink,
+        nobody);
+    fail_unless_equals_int(nobody.readings.size(), 2);
+    fail_unless_equals_int(nobody.readings[1].sensors[0], 0);
   }
 }
 GST_END_TEST
