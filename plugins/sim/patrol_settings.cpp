@@ -22,6 +22,19 @@ GType lockstep_type() {
   return type;
 }
 
+GType shake_kind_type() {
+  static const GEnumValue values[] = {
+      {static_cast<int>(sim::ShakeKind::robot),
+       "A robot, at 1.5 to 8 Hz, wholly while it drives .6 m/s or turns 45 degrees a second, and not while "
+       "it stands",
+       "robot"},
+      {static_cast<int>(sim::ShakeKind::hand),
+       "A hand, at .5 to 3 Hz, always; hand-held videos shake by about .5 degrees", "hand"},
+      {0, nullptr, nullptr}};
+  static const GType type = g_enum_register_static("CerberusPatrolSimShakeKind", values);
+  return type;
+}
+
 GType preset_type() {
   static const GType type = register_pir_presets("CerberusPatrolSimPirPreset");
   return type;
@@ -47,8 +60,8 @@ const Property<PatrolSettings> kProperties[] = {
     property("speed", &S::speed, .05, 1.5, "How fast the robot drives, metres a second"),
     property("yaw-rate", &S::yaw_rate, 1, 60, "How fast the robot turns, degrees a second"),
     property("shake", &S::shake, 0, 5,
-             "How much the camera shakes while the robot moves at .6 m/s or 45 degrees a second: RMS of each "
-             "angle, degrees; 0 = not at all"),
+             "How much the camera shakes: RMS of each angle, degrees; 0 = not at all"),
+    property("shake-kind", &S::shake_kind, shake_kind_type, "What shakes the camera, and when"),
     property("camera-height", &S::camera_height, .1, 3, "Height of the camera above the floor, metres"),
     property("horizontal-fov", &S::horizontal_fov, 10, 120,
              "Angle that the camera sees over the picture's width, degrees"),
@@ -107,6 +120,12 @@ std::string pir_info(const PatrolSettings& settings, CerberusPirInfo& info) {
   return pir_info(settings.pir_bearings, field, info);
 }
 
+double pir_range(const PatrolSettings& settings) {
+  if (settings.pir_range > 0) return settings.pir_range;
+  const sensing::PirPreset* preset = pir_preset(settings.pir_preset);
+  return preset ? preset->range : sim::kPaperReach[0].distance;
+}
+
 sensing::PirOptions pir_options(const PatrolSettings& settings) {
   const sensing::PirPreset* preset = pir_preset(settings.pir_preset);
   return preset ? preset->options : sensing::PirOptions{};
@@ -139,11 +158,10 @@ std::variant<std::unique_ptr<sim::House>, std::string> build_house(const PatrolS
   house.speed = settings.speed;
   house.yaw_rate = sensing::radians(settings.yaw_rate);
   house.shake = sensing::radians(settings.shake);
+  house.shake_kind = static_cast<sim::ShakeKind>(settings.shake_kind);
   house.people = settings.people;
-  const sensing::PirPreset* preset = pir_preset(settings.pir_preset);
-  double range = settings.pir_range;
-  if (!(range > 0)) range = preset ? preset->range : sim::kPaperReach[0].distance;
-  house.pir = sim::pir_traits(preset, sensing::radians(sensors.field_of_view), range);
+  house.pir = sim::pir_traits(pir_preset(settings.pir_preset), sensing::radians(sensors.field_of_view),
+                              pir_range(settings));
   for (guint i = 0; i < sensors.sensors; ++i)
     house.pir_bearings.push_back(sensing::radians(sensors.bearings[i]));
   auto built = sim::House::build(std::get<sim::FloorPlan>(std::move(plan)), house);

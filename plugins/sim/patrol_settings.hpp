@@ -31,6 +31,7 @@ struct PatrolSettings {
   double speed = sim::HouseSettings{}.speed;
   double yaw_rate = 45;
   double shake = .1;
+  int shake_kind = static_cast<int>(sim::ShakeKind::robot);
   double camera_height = sim::HouseSettings{}.camera_height;
   double horizontal_fov = 60;
   guint64 exposure = 10 * GST_MSECOND;
@@ -51,6 +52,8 @@ std::span<const Property<PatrolSettings>> patrol_properties();
 std::string pir_info(const PatrolSettings& settings, CerberusPirInfo& info);
 // What makes readings of the sensors' lines.
 sensing::PirOptions pir_options(const PatrolSettings& settings);
+// Metres.
+double pir_range(const PatrolSettings& settings);
 // The house for pictures of a size; else an error for the user.
 std::variant<std::unique_ptr<sim::House>, std::string> build_house(const PatrolSettings& settings,
                                                                    const CerberusPirInfo& sensors, int width,

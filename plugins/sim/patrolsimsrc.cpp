@@ -15,7 +15,8 @@
  * - The robot drives along its `path`, or through all rooms. It waits for people in its way.
  * - People, 1.5 to 1.9 m tall, walk along their `walks`, or from room to room at .5 to 1.6 m/s, give way to each other
  *   and to the robot.
- * - The camera has a lens (`horizontal-fov`), noise, exposure blur, and shakes while the robot moves.
+ * - The camera has a lens (`horizontal-fov`), noise, exposure blur, and shakes while the robot moves, or as in a hand
+ *   (`shake-kind`).
  *
  * Each frame carries the truth (#CerberusTruth: each person's box and visible share, bearing, distance and speed, and
  * where robot and camera are), the head's pose with which it was taken, and how the base moved (#CerberusBase), as a

@@ -194,6 +194,30 @@ START_TEST(a_sensor_is_triggered_by_who_crosses_its_field_and_not_through_a_wall
 }
 END_TEST
 
+// The bearing of a person who stands, from a robot that stands and then turns.
+START_TEST(a_robot_shakes_while_it_moves_and_a_hand_always) {
+  for (const ShakeKind kind : {ShakeKind::robot, ShakeKind::hand}) {
+    HouseSettings settings = small();
+    settings.path = routes("at 1 5; wait 6; turn 720; wait 60", Mover::robot);
+    settings.walks = routes("at 4 5; wait 60", Mover::person);
+    settings.shake = radians(.5), settings.shake_kind = kind;
+    const auto house = built(plan_of(kHall), settings);
+    std::vector<std::uint8_t> picture;
+    double stands = 0, turns = 0;
+    int frames = 0;
+    for (Time t{}; t < 11s; t += 50ms) {
+      house->take(t, kAhead, picture);
+      const double off = cerberus::sensing::wrap(house->people()[0].bearing + house->base().yaw());
+      if (t < 5s) stands += off * off, ++frames;
+      if (t >= 6s) turns += off * off;
+    }
+    stands = degrees(std::sqrt(stands / frames)), turns = degrees(std::sqrt(turns / frames));
+    ck_assert_double_eq_tol(turns, .5, .2);
+    ck_assert_double_eq_tol(stands, kind == ShakeKind::hand ? .5 : 0, .2);
+  }
+}
+END_TEST
+
 START_TEST(a_robot_waits_for_a_person_in_its_way) {
   HouseSettings settings = small();
   settings.path = routes("at 1 5; go 9 5", Mover::robot);
@@ -229,5 +253,6 @@ int main() {
                        one_seed_gives_the_same_pictures_and_another_gives_others,
                        the_truth_is_where_the_walk_leads, a_gaze_to_the_right_moves_the_person_to_the_left,
                        a_sensor_is_triggered_by_who_crosses_its_field_and_not_through_a_wall,
-                       a_robot_waits_for_a_person_in_its_way, settings_that_cannot_be_are_named});
+                       a_robot_shakes_while_it_moves_and_a_hand_always, a_robot_waits_for_a_person_in_its_way,
+                       settings_that_cannot_be_are_named});
 }

@@ -182,9 +182,9 @@ House::House(FloorPlan plan, const HouseSettings& settings, DrivenBase base)
       camera_(std::move(plan), settings.lens, settings.seed),
       room_to_step_(camera_.plan(), kLeast),
       base_(std::move(base)) {
-  // Figures of a small robot on a floor: slow rolling and pitching of its chassis, seldom above 8 Hz.
+  const bool by_hand = settings.shake_kind == ShakeKind::hand;
   for (std::uint32_t i = 0; i < 3; ++i)
-    shakes_.emplace_back(settings.shake, 1.5, 8, scramble(settings.seed, i, 12));
+    shakes_.emplace_back(settings.shake, by_hand ? .5 : 1.5, by_hand ? 3 : 8, scramble(settings.seed, i, 12));
   for (const double bearing : settings.pir_bearings) sensors_.emplace_back(settings.pir, bearing);
 }
 
@@ -310,8 +310,9 @@ void House::elapse(Time now) {
 
 Pose House::pose(Time now, const Gaze& gaze) const {
   // A robot that stands does not shake.
-  const double moves =
+  const double robot =
       std::min(1., std::abs(base_.speed()) / .6 + std::abs(base_.yaw_rate()) / sensing::radians(45));
+  const double moves = settings_.shake_kind == ShakeKind::hand ? 1 : robot;
   const double t = motion::seconds(now);
   return {base_.x(),
           base_.y(),
