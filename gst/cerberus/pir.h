@@ -12,7 +12,8 @@ G_BEGIN_DECLS
  *
  * Caps string of every stream of PIR readings. Complete caps name `format`, `sensors`
  * (int), `bearings` (array of double, degrees, one a sensor, positive to the right of
- * straight ahead) and `field-of-view` (double, degrees, of each sensor).
+ * straight ahead) and `field-of-view` (double, degrees, of each sensor). `range` (double,
+ * metres) says how far each sensor sees a person, where that is known.
  */
 #define CERBERUS_PIR_CAPS "application/x-pir, format = (string) { presence, level }"
 

@@ -7,6 +7,7 @@
 #include "page_request.h"
 #include "record/archive/folder.h"
 #include "robot/page/live_settings.h"
+#include "sensing/pir_model.h"
 #include "text/json_line.h"
 #include "text/numbers.h"
 
@@ -33,6 +34,14 @@ std::string property(const Properties& properties, std::string_view name, std::s
   for (const Property& one : properties)
     if (one.name == name) return one.value;
   return otherwise;
+}
+
+// The module that the sensors are; nullptr: none in particular.
+const sensing::PirPreset* module_of(const Properties& sensors) {
+  const std::string name = property(sensors, "preset", std::string("none"));
+  const auto all = sensing::pir_presets();
+  const auto found = std::ranges::find(all, name, &sensing::PirPreset::name);
+  return found == all.end() ? nullptr : &*found;
 }
 
 double turn_speed(const Camera& camera) {
@@ -255,7 +264,10 @@ std::string PageServer::hello(const Session& session) const {
     line.key("pan-max").fixed(property(is.head, "pan-max", 170), 2);
     if (is.sensors) {
       line.key("bearings").text(property(*is.sensors, "bearings", std::string("0,-120,120")));
-      line.key("sensor-fov").fixed(property(is.sensors, "field-of-view", 120), 1);
+      const sensing::PirPreset* module = module_of(*is.sensors);
+      const double view = module ? sensing::degrees(module->field_of_view) : 120;
+      line.key("sensor-fov").fixed(property(is.sensors, "field-of-view", view), 1);
+      line.key("sensor-range").fixed(property(is.sensors, "range", module ? module->range : 0), 1);
     }
     line.close('}');
   }

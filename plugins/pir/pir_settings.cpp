@@ -47,6 +47,10 @@ const Property<PirSettings> kProperties[] = {
         "Where each sensor looks: degrees, separated by commas, 0 ahead, positive to the right. As many as "
         "there are sensors, 1 to 16"),
     property("field-of-view", &S::field_of_view, 0.1, 360, "Angle in degrees that each sensor sees"),
+    property(
+        "range", &S::range, 0, 100,
+        "How far each sensor sees a person, metres: the caps say it, and a page's radar shows it; 0 = not "
+        "known"),
     property("heartbeat", &S::heartbeat,
              "Nanoseconds between buffers when nothing changes, at least 1 ms; a change is sent at once in "
              "any case"),
@@ -54,9 +58,10 @@ const Property<PirSettings> kProperties[] = {
         "is-live", &S::is_live,
         "Play replay and scripted readings in real time, as a live source; the other drivers are live in "
         "any case"),
-    property(
-        "preset", &S::preset, preset_type,
-        "The sensor module: sets active-low, warm-up and field-of-view. A property that was set itself wins"),
+    property("preset", &S::preset, preset_type,
+             "The sensor module: sets active-low, warm-up, field-of-view and range. A property that was set "
+             "itself "
+             "wins"),
     property("active-low", &S::active_low, "A line is low while its sensor detects (open collector)"),
     property("retrigger", &S::retrigger, "A new pulse during hold extends it"),
     property("min-pulse", &S::min_pulse,
@@ -136,6 +141,7 @@ void apply_preset(PirSettings& settings, const PirChosen& chosen) {
     settings.active_low = preset ? preset->options.active_low : defaults.active_low;
   if (!chosen[id_of("warm-up")])
     settings.warm_up = preset ? clock_time(preset->options.warm_up) : defaults.warm_up;
+  if (!chosen[id_of("range")]) settings.range = preset ? preset->range : defaults.range;
   if (!chosen[id_of("field-of-view")])  // rounded: not 119.99999999999999
     settings.field_of_view =
         preset ? text::round_to(sensing::degrees(preset->field_of_view), 6) : defaults.field_of_view;

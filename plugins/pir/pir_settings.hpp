@@ -18,6 +18,7 @@ struct PirSettings {
   std::string driver = "scripted";
   std::string bearings = "0,-120,120";
   double field_of_view = 120;
+  double range = 0;  // metres; 0: not known
   guint64 heartbeat = 100 * GST_MSECOND;
   bool is_live = false;
 

@@ -4,7 +4,8 @@
  *
  * Readings of passive infrared sensors as a stream: one byte a sensor, 0 = nothing, 1 = detection, 2 = invalid (warm-up,
  * stuck, chattering, or not open yet). A buffer comes at once at the start and at every change, and every
- * `heartbeat` when nothing changes; a detection begins `min-pulse` after its line's edge. The caps contain the sensors' bearings, which `pirfusion` reads.
+ * `heartbeat` when nothing changes; a detection begins `min-pulse` after its line's edge. The caps contain the sensors' bearings, which `pirfusion` reads,
+ * and their `range` where it is known.
  *
  * Where volts are measured, downstream may take those instead, with the caps `application/x-pir,format=level`: a 32-bit
  * float a sensor in this machine's byte order, at every sample,
@@ -100,6 +101,7 @@ struct Private {
   std::mutex lock;
   PirChosen chosen;
   CerberusPirInfo info{};
+  double range = 0;  // metres; 0: not known
   bool running = false;
   bool live = false;
   bool late = false;      // the sensors were still being opened when the source began
@@ -216,6 +218,7 @@ bool open_sensors(CerberusPirSrc* self) {
     return false;
   }
   priv.info = info;
+  priv.range = settings.range;
   priv.live = gst_base_src_is_live(GST_BASE_SRC(self));
   priv.last = 0;
   priv.base_rates.clear();
@@ -240,6 +243,7 @@ GstCaps* possible_caps(const Private& priv) {
   GstCaps* caps = cerberus_pir_info_to_caps(&info);
   info.format = CERBERUS_PIR_LEVEL;
   if (priv.late || priv.sensors.measures()) gst_caps_append(caps, cerberus_pir_info_to_caps(&info));
+  if (priv.range > 0) gst_caps_set_simple(caps, "range", G_TYPE_DOUBLE, priv.range, nullptr);
   return caps;
 }
 

@@ -13,13 +13,16 @@ namespace cerberus::plugin {
 
 // Once for each type name: each module of the project needs its own.
 inline GType register_pir_presets(const char* type_name) {
-  auto* values = new std::vector<GEnumValue>{{0, "No module in particular: what the properties say", "none"}};
-  for (const auto& preset : sensing::pir_presets()) {
-    const gchar* name = g_intern_string(std::string(preset.name).c_str());
-    values->push_back({static_cast<gint>(values->size()), name, name});
-  }
-  values->push_back({0, nullptr, nullptr});
-  return g_enum_register_static(type_name, values->data());  // which keeps them
+  static const auto values = [] {
+    std::vector<GEnumValue> list{{0, "No module in particular: what the properties say", "none"}};
+    for (const auto& preset : sensing::pir_presets()) {
+      const gchar* name = g_intern_string(std::string(preset.name).c_str());
+      list.push_back({static_cast<gint>(list.size()), name, name});
+    }
+    list.push_back({0, nullptr, nullptr});
+    return list;
+  }();
+  return g_enum_register_static(type_name, values.data());
 }
 
 // Of a value of that enumeration; nullptr: none.

@@ -239,8 +239,9 @@ bool begin(CerberusPatrolCamera* self) {
   start.tilt.position = radians(priv.state.settings.start_tilt);
   priv.feed.begin(start);
   constexpr Time kHeartbeat = std::chrono::milliseconds(100);  // as pirsrc's
-  priv.pir->begin(priv.state.sensors, pir_options(priv.state.settings), kHeartbeat,
-                  priv.state.settings.camera_name);
+  const PatrolSettings& settings = priv.state.settings;
+  priv.pir->begin(priv.state.sensors, pir_range(settings), pir_options(settings), kHeartbeat,
+                  settings.camera_name);
   return true;
 }
 

@@ -114,14 +114,15 @@ gboolean PirStream::query(GstPad* pad, GstObject* parent, GstQuery* query) {
   return TRUE;
 }
 
-void PirStream::begin(const CerberusPirInfo& info, const sensing::PirOptions& options, Time heartbeat,
-                      const std::string& camera_name) {
+void PirStream::begin(const CerberusPirInfo& info, double range, const sensing::PirOptions& options,
+                      Time heartbeat, const std::string& camera_name) {
   const std::lock_guard guard(lock_);
   steps_.clear();
   begun_ = true;
   ended_ = announced_ = unwanted_ = false;
   until_ = {};
   info_ = info;
+  range_ = range;
   camera_name_ = camera_name;
   gst_segment_init(&segment_, GST_FORMAT_TIME);
   auto sensors = std::make_unique<SimulatedSensors>();
@@ -169,6 +170,7 @@ void PirStream::announce() {
   if (std::exchange(announced_, true)) return;
   g_autofree gchar* id = gst_pad_create_stream_id(pad_, GST_PAD_PARENT(pad_), nullptr);
   g_autoptr(GstCaps) caps = cerberus_pir_info_to_caps(&info_);
+  gst_caps_set_simple(caps, "range", G_TYPE_DOUBLE, range_, nullptr);
   gst_pad_push_event(pad_, gst_event_new_stream_start(id));
   gst_pad_push_event(pad_, gst_event_new_caps(caps));
   gst_pad_push_event(pad_, gst_event_new_segment(&segment_));

@@ -34,7 +34,8 @@ class PirStream {
   void add_pad(GstElement* source, GstPadTemplate* pad_template);
 
   // ---- the video's thread, or while it does not run
-  void begin(const CerberusPirInfo& info, const sensing::PirOptions& options, Time heartbeat,
+  // range: metres, for the caps.
+  void begin(const CerberusPirInfo& info, double range, const sensing::PirOptions& options, Time heartbeat,
              const std::string& camera_name);
   void advance(Step step);
   void end();
@@ -53,11 +54,12 @@ class PirStream {
   std::mutex lock_;
   std::condition_variable news_;
   std::deque<Step> steps_;  // to come
-  bool begun_ = false;  // from begin() until the pad is inactive
+  bool begun_ = false;      // from begin() until the pad is inactive
   bool ended_ = false, flushing_ = true;
 
   // The pad's thread, and begin().
   CerberusPirInfo info_{};
+  double range_ = 0;
   std::string camera_name_;
   drivers::SensorArray sensors_;
   std::vector<drivers::SensorEdge>* edges_ = nullptr;  // that the sensors read

@@ -242,6 +242,24 @@ GST_START_TEST(a_property_that_was_set_wins_over_the_preset_in_any_order) {
 }
 GST_END_TEST
 
+GST_START_TEST(the_caps_say_how_far_the_sensors_see_where_it_is_known) {
+  // The range of the HC-SR501 is 7 m.
+  for (const auto& [properties, metres] :
+       {std::pair("", -1.), std::pair("preset=hc-sr501", 7.), std::pair("preset=hc-sr501 range=5", 5.),
+        std::pair("range=5.5", 5.5)}) {
+    Source source(std::string(properties) + " script=\"0,0,0,0\"");
+    source.all();
+    GstCaps* caps = gst_pad_get_current_caps(source.harness()->sinkpad);
+    CerberusPirInfo info;
+    fail_unless(cerberus_pir_info_from_caps(&info, caps, nullptr));
+    gdouble range = -1;
+    gst_structure_get_double(gst_caps_get_structure(caps, 0), "range", &range);
+    fail_unless_equals_float(range, metres);
+    gst_caps_unref(caps);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(a_sensor_that_is_stuck_or_chatters_is_named_and_so_is_its_recovery) {
   Source stuck(
       "bearings=0,-120,120 script=\"0,0,0,0; 1,0,1,0; 700,0,0,0; 701,0,0,0\" heartbeat=1000000000000");
@@ -473,6 +491,7 @@ Suite* pirsrc_suite() {
   tcase_add_test(tests, every_change_is_a_message_and_a_heartbeat_is_none);
   tcase_add_test(tests, the_model_follows_the_properties);
   tcase_add_test(tests, a_property_that_was_set_wins_over_the_preset_in_any_order);
+  tcase_add_test(tests, the_caps_say_how_far_the_sensors_see_where_it_is_known);
   tcase_add_test(tests, a_sensor_that_is_stuck_or_chatters_is_named_and_so_is_its_recovery);
   tcase_add_test(tests, a_wrong_setting_is_an_error_that_names_it);
   tcase_add_test(tests, a_bad_recording_is_named_with_its_line);

@@ -56,6 +56,7 @@ constexpr Option kSensors[] = {
     {"preset", K::choice, 0, 0, "none hc-sr501 am312 sk-11"},
     {"bearings", K::text},
     {"field-of-view", K::number, 0.1, 360},
+    {"range", K::number, 0, 100},
     {"chip", K::text},
     {"lines", K::text},
     {"bias", K::choice, 0, 0, "as-is none pull-up pull-down"},

@@ -650,8 +650,10 @@ function drawRadar() {
   const is = about() || {};
   const sensors = is.bearings ? is.bearings.split(',').map(Number) : [];
   const pir = facts && facts.pir || [];
+  // As far as they see, where that is known; the circle is 12 m.
+  const reach = radius * (is['sensor-range'] > 0 ? Math.min(1, is['sensor-range'] / 12) : 1);
   sensors.forEach((bearing, k) => {
-    sector(bearing, is['sensor-fov'], radius, pir[k] === 1 ? 'rgb(216 38 44 / .35)' : 'rgb(108 140 200 / .12)');
+    sector(bearing, is['sensor-fov'], reach, pir[k] === 1 ? 'rgb(216 38 44 / .35)' : 'rgb(108 140 200 / .12)');
     if (pir[k] === 1) words.push(`sensor ${k + 1} detects`);
   });
   draw.beginPath();
