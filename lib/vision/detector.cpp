@@ -189,10 +189,7 @@ void Detector::track(Analysis& record, const DetectorFrame& frame, std::span<con
     calm_.reset();
     own_motion_.reset();
   } else if (record.camera) {
-    if (frame.motion.still)
-      calm_.add_still(frame.seconds);
-    else
-      calm_.add(record.camera->corners, tracked_, frame.size, frame.seconds);
+    calm_.add(record.camera->corners, frame.motion.transform, tracked_, frame.size, frame.seconds);
     record.camera.stored().calm = calm_.share();
   }
   GrayView difference;

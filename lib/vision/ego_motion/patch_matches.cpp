@@ -30,7 +30,6 @@ constexpr struct Parameters {
   // found a pan is no calmer than parallax is (medians of calm .65 and .72), by these it is (.83 and .74).
   float sure = 0.1f;  // standard deviation of its place; and at least
   int surest = 16;    // patches. derived: twice those that SceneCalm needs, half of them on objects
-  double fits = 0.5;  // from its place by the camera's motion: what a registered difference bears
 } kParameters;
 
 // Matches one patch, starting at the place given by `guess`.
@@ -151,7 +150,7 @@ SceneCorners PatchMatches::corners(const Transform& motion, Size picture) const 
   for (int i = 0; i < samples_.count; ++i) {
     if (variances_[i] >= most && samples_.count > q.surest) continue;
     const Point p = motion.apply({samples_.x[i], samples_.y[i]});
-    const bool fits = std::hypot(samples_.u[i] - p.x, samples_.v[i] - p.y) <= q.fits * pixel;
+    const bool fits = std::hypot(samples_.u[i] - p.x, samples_.v[i] - p.y) <= kBearable * pixel;
     corners.corner[corners.count++] = {in_256ths(samples_.x[i], picture.width),
                                        in_256ths(samples_.y[i], picture.height), fits};
   }

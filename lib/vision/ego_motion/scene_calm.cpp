@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vision/geometry/transform.h"
-
 namespace cerberus::vision {
 
 namespace {
@@ -27,7 +25,9 @@ bool touches(Point corner, double reach, std::span<const Box> boxes) {
 
 }  // namespace
 
-void SceneCalm::add(const SceneCorners& corners, std::span<const Box> objects, Size frame, double seconds) {
+void SceneCalm::add(const SceneCorners& corners, const Transform& motion, std::span<const Box> objects,
+                    Size frame, double seconds) {
+  if (motion.corner_motion(frame) * 320 <= kBearable * frame.width) return follow(1, seconds);
   int count = 0, fitting = 0;
   for (const SceneCorners::Corner& c :
        std::span(corners.corner).first(static_cast<std::size_t>(corners.count))) {
