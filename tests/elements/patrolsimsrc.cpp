@@ -392,6 +392,28 @@ GST_START_TEST(what_the_robots_own_turn_triggers_is_doubtful) {
 }
 GST_END_TEST
 
+// The base on the frames says how fast it drives: pirfusion needs no event for that.
+GST_START_TEST(what_stands_beside_the_robots_way_is_doubtful_to_pirfusion) {
+  Outcome outcome;
+  run("patrolsimsrc name=robot num-buffers=450 people=0 pir-bearings=90,-90 path=\"at 1.5 5.3; go 14 5.3\" ! "
+      "video/x-raw,width=32,height=24 ! pirfusion name=fusion" +
+          kSink + " robot.pir ! fusion.",
+      outcome);
+  int detections = 0, sure = 0;
+  for (GstBuffer* frame : outcome.frames) {
+    const CerberusFusion* fusion = cerberus_buffer_peek_fusion(frame);
+    const CerberusBase* base = cerberus_buffer_peek_base(frame);
+    fail_unless(fusion && base && base->speed <= .6 + 1e-6);
+    for (guint i = 0; i < 2; ++i) {
+      detections += fusion->sensors[i] == 1;
+      sure += fusion->sensors[i] == 1 && !(fusion->doubtful >> i & 1);
+    }
+  }
+  fail_unless(detections > 30, "%d", detections);
+  fail_unless_equals_int(sure, 0);
+}
+GST_END_TEST
+
 GST_START_TEST(both_pads_end) {
   Outcome outcome;
   run("patrolsimsrc name=robot num-buffers=10 people=0 " + kStands +
@@ -500,6 +522,7 @@ static Suite* patrolsimsrc_suite() {
   tcase_add_test(tc, a_module_with_a_short_range_does_not_reach);
   tcase_add_test(tc, messages_of_sensors_come_without_a_link);
   tcase_add_test(tc, what_the_robots_own_turn_triggers_is_doubtful);
+  tcase_add_test(tc, what_stands_beside_the_robots_way_is_doubtful_to_pirfusion);
   tcase_add_test(tc, both_pads_end);
   tcase_add_test(tc, both_pads_begin_anew_after_a_stop_at_any_moment);
   tcase_add_test(tc, settings_that_cannot_be_are_errors_that_name_them);
