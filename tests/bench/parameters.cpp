@@ -112,7 +112,6 @@ void name(Numbers n, TrackParameters& p) {
 
          N(brake),
 
-         N(confidence_time),
          N(same_extent),
 
          N(stride),
@@ -157,8 +156,7 @@ void name(Numbers n, DataAssociation::Parameters& p) {
 }
 
 void name(Numbers n, RegionAppearances::Parameters& p) {
-  n.add({D(samples), D(rough_samples), N(familiar), N(reach), N(reach_up), N(displacement), N(least_reach),
-         N(steps), N(inside)});
+  n.add({D(samples), D(rough_samples), N(familiar), N(reach), N(displacement), N(steps), N(inside)});
 }
 
 void name(Numbers n, AppearanceParameters& p) {

@@ -38,8 +38,8 @@ std::optional<Point> RegionAppearances::find(const TrackHypothesis& track, const
   if (!input_.known() || !track.has_appearance()) return std::nullopt;
   const Parameters& q = parameters_;
   const Box box = track.box();
-  const double s = track.size(), reach_up = q.reach_up * s;
-  const double reach = std::min(q.reach * s, 2 * std::sqrt(track.x.pp) + q.least_reach * s);
+  const double s = track.size(), reach_up = track.parameters->position_noise * s;
+  const double reach = std::min(q.reach * s, 2 * std::sqrt(track.x.pp) + track.parameters->found_noise * s);
   const double pixel = static_cast<double>(frame_.width) / input_.luma.width;
   const double step = std::max(box.width / q.steps, pixel), step_up = std::max(reach_up, pixel);
   const int columns = static_cast<int>(reach / step), rows = static_cast<int>(reach_up / step_up);

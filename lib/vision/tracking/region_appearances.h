@@ -20,9 +20,7 @@ class RegionAppearances {
     int rough_samples = 120;     // and of each candidate position in a group
     double familiar = 0.35;      // the most that appearance distance and displacement cost together
     double reach = 0.5;          // S to either side that is searched
-    double reach_up = 0.05;      // S up and down; small, as coats and legs are of one colour each
     double displacement = 0.05;  // cost of the farthest position to the side; twice as much up or down
-    double least_reach = 0.1;    // S, added to two standard deviations of the position
     double steps = 6;            // candidate positions in the width of a box
     double inside = 0.8;         // of a candidate box that lies in the region
   };

@@ -189,7 +189,7 @@ void TrackHypothesis::shrink_into(const Box& region) {
 void TrackHypothesis::note_seen(double seen_confidence, double size_before, double seconds) {
   const TrackParameters& q = *parameters;
   unseen = 0;
-  const double keep = std::exp(-seconds / q.confidence_time);
+  const double keep = std::exp(-seconds / q.extent_known);
   confidence = keep * confidence + (1 - keep) * (0.5 + 0.5 * seen_confidence);
   const double gone = std::hypot(x.position - travel.origin.x, y.position - travel.origin.y) / size_before;
   travel.most = std::max({travel.most, gone, approach(), stretch()});

@@ -20,10 +20,12 @@ struct TrackParameters {
   // frame shows more of its way. derived: somebody who jogs, 12 km/h. swept: 1.5 to 4. Guard: unit
   // fast_object.
   double fast = 2.0;
-  double birth_speed = 3.0;      // S/s, standard deviation of the unknown first velocity
-  double position_noise = 0.05;  // S, standard deviation of a region's centre
-  double grain = 1.0 / 320;      // of the frame's width. derived: a pixel of the analysed picture, 320 wide
-  double blob_noise = 6;         // times: variance of a position from a blob of another extent
+  double birth_speed = 3.0;  // S/s, standard deviation of the unknown first velocity
+  // S, standard deviation of a region's centre, and the way up and down in which an object is searched by its appearance:
+  // small, as coats and legs are of one colour each.
+  double position_noise = 0.05;
+  double grain = 1.0 / 320;  // of the frame's width. derived: a pixel of the analysed picture, 320 wide
+  double blob_noise = 6;     // times: variance of a position from a blob of another extent
   // Of the logarithm of an extent, standard deviation of a region's and of its change in a second. derived: a person's extent
   // changes by 15 % in a second.
   double size_noise = 0.15;
@@ -34,7 +36,6 @@ struct TrackParameters {
   // a group by its appearance, which determines height poorly. swept: .6 to 2.5. Guard: person 1 of
   // bench-in_window, who is lost with 1.
   double brake = 0.8;
-  double confidence_time = 0.5;  // s, time constant of the confidence
 
   double same_extent = 1.5;  // times by which extents that agree differ at most
   // Heights. A region that only this track has, as high as the track, wider than it and narrower than this, is of the same
@@ -63,7 +64,8 @@ struct TrackParameters {
   // measured: by one value in place of .2, .25 and .4 s for persons, larger and smaller regions MOTA is .55 +- .35 and IDF1
   // .49 +- .20 higher. Guard: bench-development, bench-steady.
   double lasts = 0.3;
-  double extent_known = 0.5;  // s of fitting regions from which on the extent is well known
+  // s of fitting regions from which on the extent is well known; time constant of the confidence.
+  double extent_known = 0.5;
   // s for which a track has shared a group's region, or its own region was a group, and from which on it is of that kind. swept:
   // .3 to 1.4. And s of standing from which on the place is compared.
   double settled = 1.0;
@@ -81,7 +83,8 @@ struct TrackParameters {
   int appearance_frames = 3;     // frames from which on the model counts
 
   // Position of a track within a group by its appearance.
-  double found_noise = 0.1;  // S, standard deviation of that position
+  // S, standard deviation of that position; searched is so much beyond two standard deviations of the expected one.
+  double found_noise = 0.1;
 
   double covered = 0.2;  // of a box that another track covers: it is not isolated, and may be behind that one
   // S that an object came, at least, which may stop or go off-screen, and that a fragment of a standing object moves before it
