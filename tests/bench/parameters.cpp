@@ -117,7 +117,7 @@ void name(Numbers n, TrackParameters& p) {
          N(stride),
          N(gate_noise),
          N(gate),
-         N(fragment_area),
+         N(fragment),
          N(fragment_gate),
          N(size_cost),
          N(gate_cost),
@@ -146,8 +146,8 @@ void name(Numbers n, TrackParameters& p) {
 }
 
 void name(Numbers n, LifeCycle::Parameters& p) {
-  n.add({N(least_travel), N(least_hits), N(confirm_slack), N(hit_share), N(coast_share), N(certain),
-         N(sliver), N(seen)});
+  n.add(
+      {N(least_travel), N(least_hits), N(confirm_slack), N(hit_share), N(coast_share), N(certain), N(seen)});
 }
 
 void name(Numbers n, DataAssociation::Parameters& p) {
@@ -156,7 +156,7 @@ void name(Numbers n, DataAssociation::Parameters& p) {
 }
 
 void name(Numbers n, RegionAppearances::Parameters& p) {
-  n.add({D(samples), D(rough_samples), N(familiar), N(reach), N(displacement), N(steps), N(inside)});
+  n.add({D(samples), D(rough_samples), N(reach), N(displacement), N(steps), N(inside)});
 }
 
 void name(Numbers n, AppearanceParameters& p) {

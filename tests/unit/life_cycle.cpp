@@ -341,10 +341,10 @@ START_TEST(tracks_in_view_are_published_while_their_place_is_certain) {
       t.uncut.height = largest;
     });
   };
-  ck_assert(at_edge(0, 19, 100) && at_edge(621, 640, 100));
-  ck_assert(!at_edge(0, 17, 100) && !at_edge(623, 640, 100));  // less than .18 x 100
+  ck_assert(at_edge(0, 21, 100) && at_edge(619, 640, 100));
+  ck_assert(!at_edge(0, 19, 100) && !at_edge(621, 640, 100));  // less than .2 x 100
   ck_assert(at_edge(7, 24, 100));                              // not cut by the edge: beyond .01 x 640
-  ck_assert(!at_edge(0, 19, 110));                             // it was higher before
+  ck_assert(!at_edge(0, 21, 110));                             // it was higher before
   TrackHypothesis sliver = track(Confirmed{});
   sliver.x.position = 8;
   sliver.w.value = std::log(16);

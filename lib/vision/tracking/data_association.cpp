@@ -54,7 +54,7 @@ bool DataAssociation::one_above_another(const Box& a, const Box& b, const Box& r
 // Is it small and, all but its rim, inside the other?
 bool DataAssociation::is_part(const TrackHypothesis& part, const TrackHypothesis& whole) const {
   const Box a = part.box(), b = whole.box();
-  return a.area() < part.parameters->fragment_area * b.area() &&
+  return a.area() < part.parameters->fragment * b.area() &&
          overlap_area(a, b) > parameters_.inside * a.area();
 }
 

@@ -178,7 +178,7 @@ bool LifeCycle::has_stopped(const TrackHypothesis& t) const {
   if (t.slow < of.lasts || t.fit.time < of.extent_known || t.travel.most < of.travelled ||
       t.seen_for() < q.seen || t.uncut.leaving)
     return false;
-  const bool remnant = t.box().area() < of.fragment_area * t.uncut.width * t.uncut.height;
+  const bool remnant = t.box().area() < of.fragment * t.uncut.width * t.uncut.height;
   return !remnant && !t.left && !covered(t);
 }
 
@@ -204,7 +204,7 @@ bool LifeCycle::is_sliver(const TrackHypothesis& t) const {
   const bool at_edge = box.x < margin || box.right() > frame_.size.width - margin;
   return !frame_.turning && at_edge &&
          (t.kind == RegionKind::part ||
-          box.width < parameters_.sliver * std::max(t.uncut.height, box.height));
+          box.width < t.parameters->fragment * std::max(t.uncut.height, box.height));
 }
 
 double LifeCycle::coast_time(const TrackHypothesis& t) const {

@@ -44,11 +44,7 @@ class LifeCycle {
     // is .33 +- .28 higher. Guard: bench-development, bench-steady.
     double coast_share = 0.4;
     double certain = 0.4;  // of the box's width: standard deviation up to which a coasted track is published
-    // Of the largest height that it had: what the picture's left or right edge cuts to this width is mostly outside, and
-    // unpublished. derived: half of the width of a walking person. swept: MOTA on TUD-Campus is .21 without, .26 to .27
-    // from .14 to .22.
-    double sliver = 0.18;
-    double seen = 1.5;  // s for which an object was seen that has stopped
+    double seen = 1.5;     // s for which an object was seen that has stopped
   };
 
   LifeCycle() = default;

@@ -44,7 +44,7 @@ std::optional<Point> RegionAppearances::find(const TrackHypothesis& track, const
   const double step = std::max(box.width / q.steps, pixel), step_up = std::max(reach_up, pixel);
   const int columns = static_cast<int>(reach / step), rows = static_cast<int>(reach_up / step_up);
   std::optional<Point> found;
-  double least = q.familiar;
+  double least = track.parameters->different;
   for (int j = -rows; j <= rows; ++j)
     for (int i = -columns; i <= columns; ++i) {
       const Box there{box.x + i * step, box.y + j * step_up, box.width, box.height};

@@ -18,7 +18,6 @@ class RegionAppearances {
   struct Parameters {
     int samples = 500;           // pixels that are read of a region
     int rough_samples = 120;     // and of each candidate position in a group
-    double familiar = 0.35;      // the most that appearance distance and displacement cost together
     double reach = 0.5;          // S to either side that is searched
     double displacement = 0.05;  // cost of the farthest position to the side; twice as much up or down
     double steps = 6;            // candidate positions in the width of a box

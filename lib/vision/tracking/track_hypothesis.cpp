@@ -205,7 +205,7 @@ double TrackHypothesis::distance(const Box& seen, Size frame) const {
   const Residual ry = compare_extents(b.y, b.bottom(), seen.y, seen.bottom(), q);
   const double noise = square(q.gate_noise * s);
   const double d2 = square(rx.distance) / (x.pp + noise) + square(ry.distance) / (y.pp + noise);
-  const bool fragment = !returns && seen.area() < q.fragment_area * b.area();
+  const bool fragment = !returns && seen.area() < q.fragment * b.area();
   const double gate = fragment ? q.fragment_gate : q.gate;
   if (d2 > square(gate)) return -1;
   const double sizes = std::abs(std::log(seen.width / b.width)) + std::abs(std::log(seen.height / b.height));
