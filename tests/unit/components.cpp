@@ -15,7 +15,7 @@ using namespace cerberus::vision;
 namespace {
 
 constexpr Size kSize{320, 240};
-constexpr FrameWindows kWindows;  // of 25 frames a second
+const FrameWindows kWindows = FrameWindows::of(1 / 25.0);  // of 25 frames a second
 
 struct Rect {
   int x, y, width, height;
@@ -71,15 +71,14 @@ constexpr Rect kPerson{100, 80, 30, 80};
 }  // namespace
 
 START_TEST(windows_are_times_not_frames) {
-  const FrameWindows usual = FrameWindows::of(1 / 25.0), slow = FrameWindows::of(1 / 5.0),
-                     fast = FrameWindows::of(1 / 100.0);
-  ck_assert_int_eq(usual.fresh, kWindows.fresh);
-  ck_assert_int_eq(usual.moving, kWindows.moving);
-  ck_assert_int_eq(usual.recent, kWindows.recent);
-  ck_assert_int_eq(usual.young, kWindows.young);
-  ck_assert_int_eq(usual.newest, kWindows.newest);
-  ck_assert_int_eq(usual.tick, kWindows.tick);
-  ck_assert_int_eq(usual.hold, kWindows.hold);
+  const FrameWindows slow = FrameWindows::of(1 / 5.0), fast = FrameWindows::of(1 / 100.0);
+  ck_assert_int_eq(kWindows.fresh, 1);
+  ck_assert_int_eq(kWindows.moving, 3);
+  ck_assert_int_eq(kWindows.recent, 25);
+  ck_assert_int_eq(kWindows.young, 50);
+  ck_assert_int_eq(kWindows.newest, 25);
+  ck_assert_int_eq(kWindows.tick, 1);
+  ck_assert_int_eq(kWindows.hold, 250);
   ck_assert_int_eq(slow.hold, 50);   // 10 s
   ck_assert_int_eq(slow.young, 10);  // 2 s
   ck_assert_int_eq(slow.moving, 3);  // never fewer than three frames

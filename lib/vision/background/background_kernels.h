@@ -29,8 +29,8 @@ struct BlockSums {
 struct BlockRows {
   GrayView frame, background, age, quiet;  // background: readable one pixel beyond every side
   int first = 0, end = 0;                  // rows to use, 1 <= first, end <= height - 1
-  int step = 1;                            // every step-th of them
-  int quiet_from = 3;                      // ticks
+  int step;                                // every step-th of them
+  int quiet_from;  // ticks without motion from which a pixel counts for the registration error
 };
 // The block whose columns begin at x; columns outside [begin, end) are left out, with begin >= 1, end <= width - 1.
 BlockSums block_sums(const BlockRows& rows, int x, int begin, int end);
@@ -52,7 +52,7 @@ struct CompareRow {
   const std::uint64_t* moved = nullptr;     // D(k) > Th
   std::uint8_t* quiet = nullptr;            // ticks since `moved`; counted up here ...
   int width = 0;
-  int ticks = 1;  // ... by so many
+  int ticks = 0;  // ... by so many
 };
 struct CompareLimits {
   std::array<std::uint8_t, kBrightness> noise{};  // sigma of frame - background, 1/16 level
@@ -90,7 +90,7 @@ struct LearnRow {
   std::uint8_t *spread = nullptr, *age = nullptr;
   int width = 0;
   int phase = 0;  // 0 or 15, alternating: rounding of the spread
-  int tick = 1;   // frames for which `quiet` counts one; at most 128
+  int tick = 0;   // frames for which `quiet` counts one; at most 128
 };
 // mean += rate(age) (frame - background), rate = 1 / (age + 1) down to 3 / 256; spread follows
 // 16 |frame - background| with 1/16; age + 1. Pixels of age 0 and absorbed ones are set to `taken`;

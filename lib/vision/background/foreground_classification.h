@@ -73,7 +73,7 @@ class ForegroundClassification {
   void decide(const ClassificationInput& input, MutableBitView mask, MutableBitView absorb);
 
   std::array<double, kBrightness> noise_{};
-  FrameWindows windows_;
+  FrameWindows windows_{};
   Image<std::uint8_t> tolerance_;  // registration error in 1/16 pixel, one row of blocks, per pixel
   BitMask weak_, strong_;          // hysteresis: components of `weak` that contain a pixel of `strong` stay
   Morphology morphology_;

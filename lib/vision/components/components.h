@@ -27,15 +27,16 @@ inline constexpr std::uint8_t kRelearn = 4;
 // Durations. Those of rest are in ticks, by which the plane `quiet` counts: as many frames as come nearest to 0.04 s, so that
 // its 8 bits reach for 7 to 10 s. Those of learning are in frames.
 struct FrameWindows {
-  int fresh = 1;    // 0.04 s: motion in the last tick
-  int moving = 3;   // 0.12 s, at least 3 ticks: a pixel that moved so lately is moving
-  int recent = 25;  // 1 s: a pixel that moved so lately may have stopped for a moment
-  int hold =
-      250;  // 10 s, 50 to 250 ticks (6.8 s at 37 frames a second, 8.3 s at 30 and 60): how long an object that stopped stays foreground
-  int newest = 25;        // frames, 1 s: a background learnt for less may still be wrong ...
-  int young = 50;         // ... and for less than 2 s may show an object
-  int tick = 1;           // frames
-  double seconds = 0.04;  // from frame to frame
+  int fresh;   // 0.04 s: motion in the last tick
+  int moving;  // 0.12 s, at least 3 ticks: a pixel that moved so lately is moving
+  int recent;  // 1 s: a pixel that moved so lately may have stopped for a moment
+  // 10 s, 50 to 250 ticks (6.8 s at 37 frames a second, 8.3 s at 30 and 60): how long an object that stopped stays
+  // foreground
+  int hold;
+  int newest;      // frames, 1 s: a background learnt for less may still be wrong ...
+  int young;       // ... and for less than 2 s may show an object
+  int tick;        // frames
+  double seconds;  // from frame to frame
   // seconds: > 0.
   static FrameWindows of(double seconds);
 };
