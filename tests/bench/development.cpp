@@ -41,8 +41,8 @@ using namespace cerberus::bench;
 
 namespace {
 
-// A change that costs more than this is no accident. Seen: .519, .697, .362; 5.8 identities a minute, .759 soon.
-constexpr Floors kMotionAlone{.49, .66, .32, 8, .70};
+// A change that costs more than this is no accident. Seen: .522, .688, .349; 2.4 identities a minute, .76 soon.
+constexpr Floors kMotionAlone{.49, .66, .32, 5, .70};
 // Seen with HOG: .63, .74, .37; 1.3 identities a minute, .76 soon.
 constexpr Floors kWithPersons{.59, .70, .31, 4, .7};
 constexpr double kCalm = .8;  // share of the corners; see SceneCalm
