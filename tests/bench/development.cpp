@@ -43,7 +43,7 @@ namespace {
 
 // A change that costs more than this is no accident. Seen: .522, .688, .349; 2.4 identities a minute, .76 soon.
 constexpr Floors kMotionAlone{.49, .66, .32, 5, .70};
-// Seen with HOG: .63, .74, .37; 1.3 identities a minute, .76 soon.
+// Seen with HOG: .63, .74, .40; 1.3 identities a minute, .80 soon.
 constexpr Floors kWithPersons{.59, .70, .31, 4, .7};
 constexpr double kCalm = .8;  // share of the corners; see SceneCalm
 

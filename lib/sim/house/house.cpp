@@ -229,7 +229,7 @@ std::variant<std::unique_ptr<House>, std::string> House::build(FloorPlan plan,
   return house;
 }
 
-// Who would walk into what stands slides along it.
+// A person who would walk into a wall or a thing slides along it.
 void House::keep_off(Person& person, const Spot& before) const {
   const Spot now{person.walker.stance().x, person.walker.stance().y};
   for (const Spot& allowed : {now, Spot{before.x, now.y}, Spot{now.x, before.y}, before})

@@ -16,8 +16,9 @@ class OwnMotionEvidence {
  public:
   // Forgets all tracks.
   void reset() { tracks_.clear(); }
-  // difference: D(k), registered, better without what a displacement of a pixel explains; empty: none is known, and every track is believed. calm: SceneCalm::share(). seconds:
-  // since the frame before (<= 0: unknown, the last known distance is used). The view lives until the next call.
+  // difference: registered, as Differences::tolerant, or D(k) where the camera stands; empty: none is known, and every track is
+  // believed. calm: SceneCalm::share(). seconds: since the frame before (<= 0: unknown, the last known distance is used). The
+  // view lives until the next call.
   void begin_frame(GrayView difference, double calm, double seconds);
   // Returns whether the track is believed in this frame; called once a frame for each track. box: pixels of the difference.
   // seen: it has a region; without one its evidence stays.

@@ -19,6 +19,11 @@ RowSpan both(RowSpan a, RowSpan b) {
   return s.begin < s.end ? s : RowSpan{};
 }
 
+void clear_outside(RowSpan span, std::uint8_t* row, int width) {
+  std::fill(row, row + span.begin, std::uint8_t{0});
+  std::fill(row + span.end, row + width, std::uint8_t{0});
+}
+
 }  // namespace
 
 struct ThreeFrameDifference::State {
@@ -81,8 +86,7 @@ void ThreeFrameDifference::State::subtract_before(GrayView first, GrayView secon
       f2 = relit.view().data;
     }
     difference_row(first.row(y) + span.begin, f2, count, row + span.begin);
-    std::fill(row, row + span.begin, std::uint8_t{0});
-    std::fill(row + span.end, row + size.width, std::uint8_t{0});
+    clear_outside(span, row, size.width);
   }
 }
 
@@ -131,10 +135,6 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
   const auto covered = [&](int y) {
     const RowSpan span = s.spans[static_cast<std::size_t>(y)];
     return span.begin < span.end;
-  };
-  const auto clear_outside = [&](std::uint8_t* row, RowSpan span) {
-    std::fill(row, row + span.begin, std::uint8_t{0});
-    std::fill(row + span.end, row + size.width, std::uint8_t{0});
   };
   const auto clear = [&](MutableGrayView v) {
     for (int y = 0; y < v.height; ++y) std::fill_n(v.row(y), v.width, std::uint8_t{0});
@@ -207,13 +207,13 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
     if (waits) std::copy_n(row, size.width, s.ring[0].view().row(y));
     difference_row(f, f1, count, row + span.begin);
     counter.add(row + span.begin, count);
-    clear_outside(row, span);
+    clear_outside(span, row, size.width);
     if (!tolerant.empty()) {
       const auto beside = [&](int v) {
         return s.near_row(v >= 0 && v < size.height && covered(v) ? v : y) + span.begin;
       };
       tolerant_difference_row(f, beside(y - 1), f1, beside(y + 1), count, tolerant.row(y) + span.begin);
-      clear_outside(tolerant.row(y), span);
+      clear_outside(span, tolerant.row(y), size.width);
     }
     result.valid += static_cast<std::uint32_t>(count);
   }

@@ -24,10 +24,10 @@ void BrightnessLevel::reset() {
 
 void BrightnessLevel::make_bins() {
   const AppearanceParameters& q = parameters_;
+  const double usual = std::exp2(-level_);
   for (int grey = 0; grey < 256; ++grey) {
-    const double at = (std::log2(grey * std::exp2(-level_) + q.dark) - kLowest) / (kHighest - kLowest) *
-                          AppearanceModel::kBins -
-                      0.5;
+    const double at =
+        (std::log2(grey * usual + q.dark) - kLowest) / (kHighest - kLowest) * AppearanceModel::kBins - 0.5;
     const double inside = std::clamp(at, 0.0, AppearanceModel::kBins - 1.0);
     const int first = std::min(static_cast<int>(inside), AppearanceModel::kBins - 2);
     bins_[grey] = {static_cast<std::uint8_t>(first),
@@ -55,8 +55,10 @@ void BrightnessLevel::update(GrayView luma, const Transform& motion) {
   if (count > 0) {
     const auto middle = ratio.begin() + count / 2;
     std::nth_element(ratio.begin(), middle, ratio.begin() + count);
-    level_ += *middle;
-    make_bins();
+    if (*middle != 0) {  // else the bins are still right
+      level_ += *middle;
+      make_bins();
+    }
   }
   size_ = luma.size();
   for (int i = 0; i < kColumns * kRows; ++i) {

@@ -83,7 +83,7 @@ double DataAssociation::pair_cost(const TrackHypothesis& t, std::size_t j) const
   if (returns && !same.width && !same.height) return Assignment::kForbidden;
   const double appearance = returns || (same.width && same.height) ? appearance_cost(t, j) : 0;
   if (appearance < 0) return Assignment::kForbidden;
-  // Of those who may have come back the nearest has, however far.
+  // Of the tracks that may come back the nearest does, however far.
   return returns ? distance + appearance : std::min(distance + appearance, parameters_.unmatched);
 }
 

@@ -19,8 +19,8 @@ class DataAssociation {
   // Where no origin stands the value was chosen by hand on vtest.avi and davis_tennis. Guard: MOTA 70 on PETS09-S2L1
   // and tests/unit (meeting, coats, tracker).
   struct Parameters {
-    // Cost of a pair; TrackHypothesis::distance() is about 0 to 2.
     // Cost of a track without region, and the most that a pair costs, but for a track that comes back.
+    // TrackHypothesis::distance() is about 0 to 2.
     double unmatched = 2;
     double shared = 1;  // cost of a track that stays in a blob of several
 

@@ -39,7 +39,8 @@ struct TrackParameters {
 
   double same_extent = 1.5;  // times by which extents that agree differ at most
   // Heights. A region that only this track has, as high as the track, wider than it and narrower than this, is of the same
-  // extent: a walker in mid-stride. Narrower again it is so by same_extent only: half of a person dissolves sooner than a stride ends. derived: a stride is .43 of the height, a foot .15. swept: 0 to .75.
+  // extent: a walker in mid-stride. Narrower again it is so by same_extent only: half of a person dissolves sooner than a
+  // stride ends. derived: a stride is .43 of the height, a foot .15. swept: 0 to .75.
   double stride = 0.65;
 
   // Validation gate and pair cost.
