@@ -5,8 +5,6 @@
 #include <array>
 #include <bitset>
 #include <cmath>
-#include <cstdlib>
-#include <span>
 
 #include "vision/image/median.h"
 #include "vision/image/rounding.h"
@@ -17,9 +15,6 @@ namespace {
 
 constexpr int kBand = LightSamples::kBandRows *
                       LightSamples::kRowStep;  // rows; flicker at 100 Hz has a period of 70 rows and more
-constexpr int kMostMisfit = 16;                // grey levels of a sample
-constexpr int kHalfLevel = 128 * 256;          // half a grey level, 16 bits of fraction
-constexpr int kFullWeight = 64;                // grey levels from which on a sample counts fully
 constexpr int kMaximumBands = 512;             // pictures of more bands are not searched for them
 
 // Origin unknown: kept from the first version. Guard of all: unit-light, and flicker and bands in unit-foreground_mask.
@@ -39,21 +34,9 @@ constexpr struct Parameters {
   double least_band = 1.0;  // grey levels: weaker bands are not compensated
 } kParameters;
 
-// Samples of a band, by thirds of the picture's width. White ones do not count: kWhite in the reference, or kNearWhite
-// under its light.
-struct BandSums {
-  std::array<int, 3> number{}, brighter{}, darker{};
-  int level = 0;   // of the reference under its light, all together
-  int misfit = 0;  // remaining differences, at most kMostMisfit each
-};
-
-bool is_white(std::uint8_t reference, std::uint8_t now) {
-  return reference >= kWhite || now >= kNearWhite;
-}
-
 // Returns whether two thirds of a band are mostly brighter, or mostly darker: a band of light covers the whole row, an
 // object rarely does. Without such thirds, no median can be as far from 0 as kParameters.least_band.
-bool has_one_direction(const BandSums& sums) {
+bool has_one_direction(const LightSums& sums) {
   int thirds = 0, up = 0, down = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     if (sums.number[i] < kParameters.least_of_third) continue;  // white
@@ -64,26 +47,8 @@ bool has_one_direction(const BandSums& sums) {
   return thirds > 0 && std::max(up, down) >= std::min(thirds, 2);
 }
 
-int number_of(const BandSums& sums) {
+int number_of(const LightSums& sums) {
   return sums.number[0] + sums.number[1] + sums.number[2];
-}
-
-// lights: of the picture's rows.
-BandSums sums_of(const LightSamples& samples, int band, std::span<const RowLight> lights) {
-  BandSums sums;
-  for (int row = samples.first_row(band); row < samples.first_row(band + 1); ++row) {
-    const RowLight light = lights[static_cast<std::size_t>(LightSamples::picture_row(row))];
-    samples.for_each(row, [&](std::size_t third, std::uint8_t reference, std::uint8_t present) {
-      const std::uint8_t now = light(reference);
-      if (is_white(reference, now)) return;
-      ++sums.number[third];
-      sums.brighter[third] += present > now;
-      sums.darker[third] += present < now;
-      sums.level += now;
-      sums.misfit += std::min(std::abs(present - now), kMostMisfit);
-    });
-  }
-  return sums;
 }
 
 }  // namespace
@@ -146,14 +111,15 @@ void LightChange::estimate(const LightSamples& samples, bool still) {
 // difference of the present picture.
 LightChange::Counts LightChange::count_differences(const LightSamples& samples) const {
   Counts counts{};
-  for (int row = 0; row < samples.rows(); ++row) {
-    const RowLight light = light_of(row);
-    samples.for_each(row, [&](std::size_t, std::uint8_t reference, std::uint8_t present) {
-      const std::uint8_t now = light(reference);
-      const int cell = (now >> 4) * kLevels + kReach + std::clamp(present - now, -kReach, kReach);
-      counts[static_cast<std::size_t>(cell)] += 1 | static_cast<std::uint64_t>(now & 15) << 32;
-    });
-  }
+  for (int row = 0; row < samples.rows(); ++row)
+    samples.for_each(
+        row, light_of(row), [&](auto*, const std::uint8_t* now, const std::uint8_t* value, int n) {
+          std::array<std::uint16_t, kSampleLanes> cell;  // computed for the whole array, so that vectors can
+          for (int i = 0; i < kSampleLanes; ++i)
+            cell[i] = static_cast<std::uint16_t>((now[i] >> 4) * kLevels + kReach +
+                                                 std::clamp(value[i] - now[i], -kReach, kReach));
+          for (int i = 0; i < n; ++i) counts[cell[i]] += 1 | static_cast<std::uint64_t>(now[i] & 15) << 32;
+        });
   return counts;
 }
 
@@ -241,32 +207,28 @@ bool LightChange::estimate_global(const LightSamples& samples) {
 double LightChange::misfit(const LightSamples& samples) const {
   std::int64_t sum = 0, number = 0;
   for (int band = 0; band < samples.bands(); ++band) {
-    const BandSums sums = sums_of(samples, band, rows_);
+    const LightSums sums = samples.sums_of_band(band, rows_);
     sum += sums.misfit;
     number += number_of(sums);
   }
   return number ? static_cast<double>(sum) / number : 0;
 }
 
-// The median of the gains of a band's samples, less 1, at most a quarter. Each is counted half a level lower and half a
-// level higher, because whole levels make steps in the gains of dark samples, which also weigh little.
+// The median of the gains of a band's samples, less 1, at most SampleGains::kReach. Dark samples weigh little.
 double LightChange::excess_of_band(const LightSamples& samples, int band) const {
-  constexpr int kMost = 64;  // 1/256 of gain
-  std::array<std::uint32_t, 2 * kMost + 1> counts{};
+  std::array<std::uint32_t, 2 * SampleGains::kReach + 1> counts{};
   std::int64_t weights = 0;
-  for (int row = samples.first_row(band); row < samples.first_row(band + 1); ++row) {
-    const RowLight light = light_of(row);
-    samples.for_each(row, [&](std::size_t, std::uint8_t reference, std::uint8_t present) {
-      const std::uint8_t now = light(reference);
-      if (is_white(reference, now)) return;
-      const int half = kHalfLevel / std::max<int>(now, 1), weight = std::min<int>(now, kFullWeight);
-      for (const int halves : {2 * (present - now) - 1, 2 * (present - now) + 1})
-        counts[static_cast<std::size_t>(std::clamp((halves * half) >> 8, -kMost, kMost) + kMost)] +=
-            static_cast<std::uint32_t>(weight);
-      weights += 2 * weight;
+  for (int row = samples.first_row(band); row < samples.first_row(band + 1); ++row)
+    samples.for_each(row, light_of(row), [&](auto* level, auto* now, auto* value, int n) {
+      SampleGains gains;
+      find_gains(level, now, value, gains);
+      for (int i = 0; i < n; ++i) {
+        counts[gains.lower[i]] += gains.weight[i];
+        counts[gains.higher[i]] += gains.weight[i];
+        weights += 2 * gains.weight[i];
+      }
     });
-  }
-  return median_of_levels(counts, weights, -kMost) / 256;
+  return median_of_levels(counts, weights, -SampleGains::kReach) / 256;
 }
 
 // Estimates the bands. Returns true if there are any.
@@ -277,7 +239,7 @@ bool LightChange::estimate_bands(const LightSamples& samples) {
   std::bitset<kMaximumBands> known;
   double strongest = 0;
   for (int band = 0; band < bands; ++band) {
-    const BandSums sums = sums_of(samples, band, rows_);
+    const LightSums sums = samples.sums_of_band(band, rows_);
     const int number = number_of(sums);
     known[band] = number >= kParameters.least_samples && sums.level > 0 &&
                   std::ranges::max(sums.number) >= kParameters.least_of_third;
