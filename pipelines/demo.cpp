@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// cerberus-demo: runs the line of closed-loop.launch as gst-launch-1.0 would, with what a line cannot do: the view is
-// made to fit the video, there is progress and a summary, and a window on the screen that may be missing or be closed.
+// cerberus-demo: runs the line of closed-loop.launch or of patrol.launch as gst-launch-1.0 would, with what a line cannot
+// do: the view is made to fit a video, there is progress and a summary, and a window on the screen that may be missing or
+// be closed.
 //
 //   pipelines/run --with build/pipelines/cerberus-demo closed-loop FILE=... MP4=... JSON=...
 #include <glib/gstdio.h>
@@ -23,13 +24,20 @@ namespace {
 constexpr double kDegree = G_PI / 180;
 // What virtualptz shows is as large as this at least, so that one can read what motionoverlay writes on it.
 constexpr vision::Size kReadable{640, 480};
+constexpr int kPatrolRate = 30;  // frames a second of patrolsimsrc, unless downstream asks for others
 
-// The elements of the line that the demo has to do with; borrowed from the pipeline.
+// The elements of the line that the demo has to do with; borrowed from the pipeline. A patrol has no file: its robot is
+// camera and world.
 struct Parts {
-  GstElement *file, *camera, *fusion, *head, *drawn, *json, *mp4;
+  GstElement *robot, *file, *camera, *fusion, *head, *drawn, *json, *mp4;
 };
 
 bool find_parts(GstElement* pipeline, Parts& parts) {
+  const auto find = [&](const char* name) {
+    g_autoptr(GstElement) found = gst_bin_get_by_name(GST_BIN(pipeline), name);
+    return found;  // the pipeline holds it
+  };
+  parts.robot = find("robot");
   const std::array<std::pair<GstElement**, const char*>, 7> all{{{&parts.file, "file"},
                                                                  {&parts.camera, "camera"},
                                                                  {&parts.fusion, "fusion"},
@@ -38,13 +46,15 @@ bool find_parts(GstElement* pipeline, Parts& parts) {
                                                                  {&parts.json, "json"},
                                                                  {&parts.mp4, "mp4"}}};
   for (const auto& [part, name] : all) {
-    g_autoptr(GstElement) found = gst_bin_get_by_name(GST_BIN(pipeline), name);
-    if (!found) {
-      std::fprintf(stderr, "demo: the line has no element called %s: it is not that of closed-loop.launch\n",
+    *part = find(name);
+    const bool of_a_file = part == &parts.file || part == &parts.camera;
+    if (!*part && !(parts.robot && of_a_file)) {
+      std::fprintf(stderr,
+                   "demo: the line has no element called %s: it is not that of closed-loop.launch or of "
+                   "patrol.launch\n",
                    name);
       return false;
     }
-    *part = found;
   }
   return true;
 }
@@ -77,18 +87,27 @@ void fit_view(const Parts& parts, vision::Size video) {
 int run(GstElement* pipeline) {
   Parts parts;
   if (!find_parts(pipeline, parts)) return 2;
-  const std::string path = location(parts.file), mp4 = location(parts.mp4), json = location(parts.json);
+  const std::string mp4 = location(parts.mp4), json = location(parts.json);
   g_autofree gchar* folder = g_path_get_dirname(mp4.c_str());
   if (g_mkdir_with_parents(folder, 0777) != 0) {
     std::fprintf(stderr, "demo: cannot make the folder %s: %s\n", folder, g_strerror(errno));
     return 2;
   }
-  const VideoFile video = look_at(path);
-  if (!video.error.empty()) {
-    std::fprintf(stderr, "demo: %s\n", video.error.c_str());
-    return 1;
+  std::string path;
+  VideoFile video;
+  if (parts.robot) {
+    gint frames = 0;
+    g_object_get(parts.robot, "num-buffers", &frames, nullptr);
+    if (frames > 0) video.duration = static_cast<guint64>(frames) * GST_SECOND / kPatrolRate;
+  } else {
+    path = location(parts.file);
+    video = look_at(path);
+    if (!video.error.empty()) {
+      std::fprintf(stderr, "demo: %s\n", video.error.c_str());
+      return 1;
+    }
+    fit_view(parts, video.size);
   }
-  fit_view(parts, video.size);
 
   Job job(pipeline, path, folder, video);
   Screen screen;
@@ -117,7 +136,9 @@ int run(GstElement* pipeline) {
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
   if (argc < 2) {
-    std::fprintf(stderr, "demo: which line? (pipelines/demo gives the one of closed-loop.launch)\n");
+    std::fprintf(
+        stderr,
+        "demo: which line? (pipelines/demo gives the one of closed-loop.launch or of patrol.launch)\n");
     return 2;
   }
   g_autoptr(GError) error = nullptr;

@@ -16,7 +16,8 @@ namespace cerberus::demo {
 
 class Job {
  public:
-  // `pipeline` has the elements `file`, `fusion` (whose frames count), `json` and `mp4`, which stay the caller's.
+  // `pipeline` has the elements `fusion` (whose frames count), `json` and `mp4`, which stay the caller's. path: of the file;
+  // empty where there is none.
   Job(GstElement* pipeline, std::string path, std::string folder, const VideoFile& video);
   Job(const Job&) = delete;
   Job& operator=(const Job&) = delete;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The whole scene, small, in the upper right corner of what virtualptz shows of it: attached to the frame as an overlay
-// composition. The frame's own pixels do not change, because motion is detected in them; motionoverlay draws the
-// composition, and so does any sink that draws compositions.
+// A small picture in the upper right corner of a frame, attached as an overlay composition: of virtualptz the whole scene.
+// The frame's own pixels do not change, because motion is detected in them; motionoverlay draws the composition, and so
+// does any sink that draws compositions.
 #pragma once
 
 #include <gst/video/video.h>
@@ -12,6 +12,9 @@
 #include "vision/geometry/window.h"
 
 namespace cerberus::plugin {
+
+// Attaches a picture of `size` to a frame that is `width` pixels wide. words: of GST_VIDEO_OVERLAY_COMPOSITION_FORMAT_RGB.
+void attach_inset(GstBuffer* words, vision::Size size, int width, GstBuffer* frame);
 
 class Inset {
  public:

@@ -5,14 +5,18 @@
 #include <gst/base/gstpushsrc.h>
 #include <gst/video/video.h>
 
+#include <cmath>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/head_query.hpp"
 #include "head_wait.hpp"
+#include "inset.hpp"
 #include "motion/pose_feed.h"
+#include "overlay/floor_map.h"
 #include "patrol_settings.hpp"
 #include "pir_stream.hpp"
 #include "shared/poses.hpp"
@@ -36,6 +40,7 @@ struct State {  // streaming thread, and state changes while it does not run
   PatrolSettings settings;
   CerberusPirInfo sensors{};
   std::unique_ptr<sim::House> house;
+  std::optional<overlay::FloorMap> map;  // with `inset`
   GstVideoInfo info;
   guint64 frame = 0;  // number of the next one
   motion::FrameTimes times;
@@ -88,7 +93,9 @@ gboolean set_caps(GstBaseSrc* base, GstCaps* caps) {
     State& state = cerberus_patrol_camera_self(base)->priv->state;
     if (!gst_video_info_from_caps(&state.info, caps)) return FALSE;
     const int width = GST_VIDEO_INFO_WIDTH(&state.info), height = GST_VIDEO_INFO_HEIGHT(&state.info);
-    return (width == kWidth && height == kHeight) || build(state, width, height).empty();
+    if ((width != kWidth || height != kHeight) && !build(state, width, height).empty()) return FALSE;
+    if (state.settings.inset) state.map.emplace(state.house->plan(), vision::Size{width, height});
+    return TRUE;
   });
 }
 
@@ -135,6 +142,32 @@ bool copy_picture(const State& state, GstBuffer* buffer) {
     for (int row = 0; row < height; ++row, from += width, to += stride) std::memcpy(to, from, width);
   }
   return true;
+}
+
+void attach_map(State& state, GstBuffer* buffer) {
+  const vision::Size size = state.map->size();
+  if (size.area() == 0) return;
+  const CerberusTruth* truth = cerberus_buffer_peek_truth(buffer);
+  overlay::FloorScene scene;
+  scene.x = truth->base_x, scene.y = truth->base_y;
+  scene.heading = radians(truth->base_heading);
+  scene.view = scene.heading + radians(truth->pan);
+  scene.field_of_view = radians(state.settings.horizontal_fov);
+  std::vector<overlay::FloorScene::Person> people;
+  for (const CerberusTruthPerson& one : std::span(truth->persons, truth->n_persons)) {
+    const double direction = scene.view + radians(one.bearing);
+    people.push_back({scene.x + one.distance * std::cos(direction),
+                      scene.y + one.distance * std::sin(direction), one.visible > 0});
+  }
+  scene.people = people;
+  GstBuffer* words = gst_buffer_new_allocate(nullptr, gsize(4 * size.area()), nullptr);
+  GstMapInfo map;
+  if (words && gst_buffer_map(words, &map, GST_MAP_WRITE)) {
+    state.map->draw(scene, {reinterpret_cast<std::uint32_t*>(map.data), size.width, size.height, size.width});
+    gst_buffer_unmap(words, &map);
+    attach_inset(words, size, GST_VIDEO_INFO_WIDTH(&state.info), buffer);
+  }
+  gst_clear_buffer(&words);
 }
 
 bool wants_lockstep(CerberusPatrolCamera* self, State& state) {
@@ -187,6 +220,7 @@ GstFlowReturn make_frame(CerberusPatrolCamera* self, GstBuffer** buffer) {
   GST_BUFFER_OFFSET_END(made) = ++state.frame;
   state.times.add(time, time_of(GST_BUFFER_DURATION(made)));
   attach_facts(state, priv.feed.at(time), made);
+  if (state.map) attach_map(state, made);
   publish_edges(priv, time);
   *buffer = made;
   return GST_FLOW_OK;

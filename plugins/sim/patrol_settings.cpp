@@ -95,6 +95,9 @@ const Property<PatrolSettings> kProperties[] = {
         "one. What begins higher than 1.5 m above the floor is seen within 3 m only"),
     property("camera-name", &S::camera_name,
              "Name of the camera, for the messages of the sensors; empty = none"),
+    property("inset", &S::inset,
+             "Attach the floor plan, small, to each frame: robot, view and people; motionoverlay draws it in "
+             "the upper right corner"),
 };
 
 std::string plan_text(const std::string& file, std::string& wrong) {

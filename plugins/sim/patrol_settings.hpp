@@ -44,6 +44,7 @@ struct PatrolSettings {
   int pir_preset = 0;                           // 0: none, else 1 + its place in sensing::pir_presets()
   double pir_field_of_view = 0, pir_range = 0;  // 0: the preset's
   std::string camera_name;
+  bool inset = false;
 };
 
 std::span<const Property<PatrolSettings>> patrol_properties();

@@ -17,6 +17,8 @@
  *   and to the robot.
  * - The camera has a lens (`horizontal-fov`), noise, exposure blur, and shakes while the robot moves, or as in a hand
  *   (`shake-kind`).
+ * - `inset` attaches the floor plan, small, to each frame: the robot with its way, what its camera sees of the floor, and
+ *   the people, in red whom it sees.
  *
  * Each frame carries the truth (#CerberusTruth: each person's box and visible share, bearing, distance and speed, and
  * where robot and camera are), the head's pose with which it was taken, and how the base moved (#CerberusBase), as a

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // patrolsimsrc in whole pipelines: what its frames carry, what its sensors send, and that a run can be repeated.
 #include <glib/gstdio.h>
+#include <gst/video/video-overlay-composition.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -146,6 +147,42 @@ GST_START_TEST(a_frame_is_a_picture_with_its_time_and_the_truth) {
   }
   const CerberusTruth* last = cerberus_buffer_peek_truth(outcome.frames.back());
   fail_unless(std::abs(last->persons[0].speed - 1) < .05);
+}
+GST_END_TEST
+
+// 96 x 82 pixels for the office with its margin, 16.8 x 14.4 m: 5.71 pixels a metre.
+GST_START_TEST(the_floor_plan_is_in_the_corner_with_the_people_where_the_truth_says) {
+  Outcome with, without;
+  // The second person is in another room.
+  const std::string line =
+      "patrolsimsrc num-buffers=30 " + kStands + "walks=\"at 8 7 90; go 8 11 1 | at 2.5 2; wait 1\" ";
+  run(line + "inset=true" + kSink, with);
+  run(line + kSink, without);
+  fail_unless(all_bytes(with) == all_bytes(without));
+  fail_if(gst_buffer_get_video_overlay_composition_meta(without.frames[0]));
+  for (GstBuffer* frame : with.frames) {
+    auto* meta = gst_buffer_get_video_overlay_composition_meta(frame);
+    fail_unless(meta && gst_video_overlay_composition_n_rectangles(meta->overlay) == 1);
+    auto* drawing = gst_video_overlay_composition_get_rectangle(meta->overlay, 0);
+    gint x = 0, y = 0;
+    guint width = 0, height = 0;
+    gst_video_overlay_rectangle_get_render_rectangle(drawing, &x, &y, &width, &height);
+    fail_unless(x == 218 && y == 6 && width == 96 && height == 82, "%d %d %u %u", x, y, width, height);
+    const std::string pixels = bytes(
+        gst_video_overlay_rectangle_get_pixels_unscaled_argb(drawing, GST_VIDEO_OVERLAY_FORMAT_FLAG_NONE));
+    const auto at = [&](double metres_x, double metres_y) {  // BGRA
+      const double scale = 96 / 16.8;
+      const auto place = std::size_t(int(scale * (metres_y + .4)) * 96 + int(scale * (metres_x + .4)));
+      return reinterpret_cast<const guint8*>(pixels.data()) + 4 * place;
+    };
+    const CerberusTruth* truth = cerberus_buffer_peek_truth(frame);
+    const double direction = truth->persons[0].bearing * G_PI / 180, away = truth->persons[0].distance;
+    const guint8* person = at(4.5 + away * std::cos(direction), 8.5 + away * std::sin(direction));
+    fail_unless(person[2] > 150 && person[1] < 100 && person[0] < 100);
+    const guint8 *hidden = at(2.5, 2), *robot = at(4.5, 8.5);
+    fail_unless(hidden[2] < 150 && std::abs(hidden[2] - hidden[0]) < 20);
+    fail_unless(robot[0] > robot[2] + 60);
+  }
 }
 GST_END_TEST
 
@@ -509,6 +546,7 @@ static Suite* patrolsimsrc_suite() {
   tcase_set_timeout(tc, 120);
   suite_add_tcase(suite, tc);
   tcase_add_test(tc, a_frame_is_a_picture_with_its_time_and_the_truth);
+  tcase_add_test(tc, the_floor_plan_is_in_the_corner_with_the_people_where_the_truth_says);
   tcase_add_test(tc, the_pictures_show_the_person_where_the_truth_says);
   tcase_add_test(tc, downstream_chooses_size_and_rate);
   tcase_add_test(tc, a_seed_gives_the_same_bytes_each_time_and_another_gives_others);

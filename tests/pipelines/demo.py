@@ -5,6 +5,7 @@
 import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -24,6 +25,15 @@ def line(file, output='out', sensors='SENSORS='):
 
 def annotate(file, output='out', sensors='SENSORS=', **more):
     return run(line(file, output, sensors), **more)
+
+
+# A person crosses 3.5 m before the robot, which stands.
+HOUSE = 'path="at 4.5 8.5; wait 1" walks="at 8 7 90; go 8 11 1"'
+
+
+def patrol(house=HOUSE, output='out'):
+    return run([TOP / 'pipelines' / 'run', '--with', PROGRAM, 'patrol', f'HOUSE={house}', 'FRAMES=60', 'WIDTH=320', 'HEIGHT=240',
+                f'MP4={output}/annotated.mp4', f'JSON={output}/objects.jsonl'])
 
 
 def refuses(file, *words, output='out'):
@@ -172,6 +182,30 @@ def test_a_file_name_with_spaces_and_a_folder_that_is_not_there_yet():
     assert len(json_lines('a/b c/objects.jsonl')) == 60
 
 
+def test_a_patrol_needs_no_video_and_finds_people():
+    said = must(patrol())
+    assert re.search(r'^60 frames, [0-9.]+ frames per second, [1-9]\d* objects? seen: '
+                     r'out/annotated.mp4 and out/objects.jsonl$', said, re.MULTILINE), said
+    lines = json_lines('out/objects.jsonl')
+    kinds = [each['kind'] for line in lines for each in line['objects']]
+    assert len(lines) == 60 and len(kinds) > 20 and set(kinds) <= {'person-like', 'thing', 'part'}, kinds
+    # By motion alone a person before a head that turns is a thing at first.
+    if run(['gst-inspect-1.0', 'personverify'])[0] == 0:
+        assert kinds.count('person-like') > 0.8 * len(kinds), kinds
+    assert decoded('out/annotated.mp4') == 60 * 320 * 240
+    if shutil.which('ffprobe'):
+        said = must(run(['ffprobe', '-v', 'error', '-count_frames', '-show_entries', 'stream=codec_name,width,height,nb_read_frames',
+                         '-of', 'csv=p=0', 'out/annotated.mp4']))
+        assert said.strip() == 'h264,320,240,60', said
+
+
+def test_a_patrol_that_cannot_be_says_why():
+    for house, word in (('plan=nothing.plan', 'nothing.plan'), ('path="at 100 100; wait 1"', '100 100 is not free')):
+        status, said = patrol(house)
+        errors = [line for line in said.splitlines() if line.startswith('demo: ')]
+        assert status == 1 and len(errors) == 1 and word in errors[0] and 'video' not in errors[0], said
+
+
 def test_odd_sizes_become_an_mp4_all_the_same():
     must(gst_launch(f'{ball(frames=20, width=321, height=243)} ! videoconvert ! video/x-raw,format=BGR ! avimux ! '
                     'filesink location=odd.avi'))
@@ -271,8 +305,10 @@ def test_ctrl_c_finishes_the_files():
 def test_the_command_explains_itself_and_its_mistakes():
     demo = TOP / 'pipelines' / 'demo'
     assert './pipelines/demo [--output DIR] [--pir CSV] [FILE]' in must(run([demo, '--help']))
+    assert './pipelines/demo [--output DIR] --patrol\n' in must(run([demo, '--help']))
     for wrong, word in ((['nothing.avi'], 'no file nothing.avi'), (['--fast'], '--fast'), (['a', 'b'], 'one file'),
-                        (['--output', '/proc/here', __file__], '/proc/here'), (['--pir', 'no.csv'], 'no file no.csv')):
+                        (['--output', '/proc/here', __file__], '/proc/here'), (['--pir', 'no.csv'], 'no file no.csv'),
+                        (['--patrol', 'walk.mp4'], 'no FILE'), (['--patrol', '--pir', 'a.csv'], 'no --pir')):
         status, said = run([demo, *wrong])
         assert status == 2 and word in said, said
 

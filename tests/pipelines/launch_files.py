@@ -9,6 +9,7 @@ objects are found. Where people are told by their size, it has the shape of one.
 that were free a moment ago. Files for hardware that is not here are parsed and not run. SERVER is cerberus-rtsp.
 """
 import contextlib
+import math
 import os
 import pathlib
 import shlex
@@ -236,6 +237,35 @@ def test_closed_loop(kind):
     assert lines[0]['pose'] == {'pan': 0, 'tilt': 0, 'moving': False}
     # A ball is no person: only motion alone follows it before a head that turns.
     check_the_loop(closed_loop(kind, 'c', PERSONS=''), 160, 14)
+
+
+# The robot stands; a person crosses 3.5 m before it at 1 m/s, and begins 1.5 m to the left.
+CROSSES = 'path="at 4.5 8.5; wait 1" walks="at 8 7 90; go 8 11 1"'
+FOCAL = WIDTH / 2 / math.tan(math.radians(30))  # pixels
+
+
+def luma(picture, left, top):
+    return picture[top * WIDTH + left]
+
+
+def test_patrol(_):
+    """Who crosses the view is found where they are and followed, twice alike; the plan is in the upper right corner."""
+    for name in 'ab':
+        finish(start('patrol', HOUSE=CROSSES, FRAMES=FRAMES, WIDTH=WIDTH, HEIGHT=HEIGHT, MP4=f'{name}.mp4', JSON=f'{name}.jsonl'))
+    assert pathlib.Path('a.jsonl').read_bytes() == pathlib.Path('b.jsonl').read_bytes(), 'two runs differ'
+    lines = json_lines('a.jsonl')
+    assert len(lines) == FRAMES and all(line.keys() >= {'pose', 'pir', 'fusion'} and len(line['pir']) == 3 for line in lines)
+    check_the_loop(lines, WIDTH, 89)
+    late = lines[45:]  # 1.5 s: found, and the head has turned
+    off = [line['pose']['pan'] + math.degrees(math.atan((each['x'] + each['w'] / 2 - WIDTH / 2) / FOCAL)) -
+           math.degrees(math.atan((line['pts'] / 1e9 - 1.5) / 3.5)) for line in late for each in line['objects']]
+    assert len(off) > 0.8 * len(late) and sum(abs(angle) < 5 for angle in off) > 0.8 * len(off), off
+    check_players_can_play('a.mp4', 'qtdemux')
+    pictures = decode('a.mp4')
+    assert len(pictures) == FRAMES, f'{len(pictures)} pictures'
+    # 96 x 82 pixels for 16.8 x 14.4 m, 6 from the edges: what is no room is dark, the floor of the lounge is bright.
+    for picture in pictures:
+        assert luma(picture, 218 + 82, 6 + 14) < 60 and luma(picture, 218 + 48, 6 + 74) > 180, 'there is no floor plan'
 
 
 def free_ports(count):

@@ -60,6 +60,7 @@ class House {
   // Of the last picture: one a person, hidden ones too.
   const std::vector<PersonTruth>& people() const { return camera_.truth(); }
   const DrivenBase& base() const { return base_; }
+  const FloorPlan& plan() const { return camera_.plan(); }
   // Since the picture before, oldest first; the level that each sensor begins with is low.
   const std::vector<PirEdge>& pir_edges() const { return edges_; }
 
