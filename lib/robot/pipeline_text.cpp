@@ -53,12 +53,13 @@ class Writer {
   }
 
   PipelineText write() {
-    const bool has_file = source_.kind == SourceKind::file || source_.kind == SourceKind::world;
+    const bool waits = waits_for_reader(source_.kind), patrols = source_.kind == SourceKind::patrol;
     if (recorder_) recorder();
     source();
     add(" ! videoconvert");
     // A telephone's video says how it was held.
-    if (has_file) add(" ! videoflip video-direction=auto ! identity sync=true");
+    if (waits && !patrols) add(" ! videoflip video-direction=auto");
+    if (waits) add(" ! identity sync=true");
     if (source_.kind == SourceKind::world) window();
     add(" ! motiondetect name=detect");
     if (camera_.persons.use != PersonsUse::never) {
@@ -69,10 +70,11 @@ class Writer {
     if (mqtt_ != nullptr) publish();
     add(" ! tee name=found");
     detection();
-    if (camera_.sensors) {
+    if (camera_.sensors && patrols) add("  patrol.pir ! fusion.pir_0");
+    if (camera_.sensors && !patrols) {
       add("  pirsrc name=sensors ! queue ! fusion.pir_0");
       set("sensors", "camera-name", camera_.name);
-      if (!has_file) set("sensors", "is-live", "true");
+      if (!waits) set("sensors", "is-live", "true");
       set_all("sensors", *camera_.sensors);
     }
     if (head_) head();
@@ -124,12 +126,28 @@ class Writer {
       case SourceKind::rtsp:
         network_camera();
         break;
+      case SourceKind::patrol:
+        patrol();
+        break;
       case SourceKind::libcamera:
         add("  libcamerasrc name=source ! video/x-raw");
         add(size_and_rate());
         if (!source_.device.empty()) set("source", "camera-name", source_.device);
         break;
     }
+  }
+
+  void patrol() {
+    add("  patrolsimsrc name=patrol  patrol.video ! video/x-raw");
+    add(size_and_rate());
+    set("patrol", "head", camera_.name);
+    set("patrol", "camera-name", camera_.name);
+    set("patrol", "horizontal-fov", number(camera_.horizontal_fov));
+    set("patrol", "inset", "true");
+    set_all("patrol", source_.patrol);
+    if (!camera_.sensors) return;
+    for (const Property& one : *camera_.sensors)
+      text_.assignments.push_back({"patrol", "pir-" + one.name, one.value, one.line});
   }
 
   void network_camera() {
@@ -206,8 +224,8 @@ class Writer {
   }
 
   void head() {
-    // The window of a world waits for the pose that answers each frame: none is dropped.
-    const bool in_step = source_.kind == SourceKind::world;
+    // The window of a world and a simulated robot wait for the pose that answers each frame: none is dropped.
+    const bool in_step = source_.kind == SourceKind::world || source_.kind == SourceKind::patrol;
     add(in_step ? "  found. ! queue" : "  found. ! queue leaky=downstream max-size-buffers=1");
     add(" ! pantiltsink name=head");
     set("head", "head", camera_.name);

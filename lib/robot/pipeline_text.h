@@ -32,7 +32,7 @@ struct Parts {
   bool head = true, recorder = true;
 };
 
-// Names in the line: `source` (and `recorded`, the second stream), `detect`, `fusion`, `sensors`, `head`, `recorder`;
+// Names in the line: `source` (and `recorded`, the second stream) or `patrol`, `detect`, `fusion`, `sensors`, `head`, `recorder`;
 // `mqtt`; the queues `picture-queue`, `record-queue`, `analysis-queue` at which frames may be dropped; the appsinks
 // `picture` (JPEG) and `facts` (JSON lines), and those of the RTSP server: kRtspPrefix with `plain`, `annotated` (encoded)
 // or `metadata` (ONVIF), each behind a valve of its name with `-valve` where nothing else needs the stream.

@@ -33,7 +33,13 @@ enum class SourceKind : std::uint8_t {
   v4l2,       // a camera of the kernel
   rtsp,       // a network camera
   libcamera,  // a camera that libcamera drives, as those of a Raspberry Pi
+  patrol,     // a simulated robot in a house with people
 };
+
+// Whether a source makes its frames when they are asked for: they are played in real time, and none is late.
+constexpr bool waits_for_reader(SourceKind kind) {
+  return kind == SourceKind::world || kind == SourceKind::file || kind == SourceKind::patrol;
+}
 
 enum class Codec : std::uint8_t { h264, h265, jpeg };
 
@@ -51,6 +57,7 @@ struct SourceSettings {
   int framerate = 0;                     // frames a second; 0: as the source gives them
   double wide_fov = 60;                  // world: degrees over the width of the video
   double start_pan = 0, start_tilt = 0;  // world: where the head looks at first, degrees
+  Properties patrol;                     // of patrolsimsrc
 };
 
 // In place of an element: the first of H.264 that works on the machine. The program puts an element there.
@@ -99,7 +106,7 @@ struct CameraSettings {
   Properties detection;        // of motiondetect
   PersonsSettings persons;
   Properties fusion;                  // of pirfusion
-  std::optional<Properties> sensors;  // of pirsrc
+  std::optional<Properties> sensors;  // of pirsrc; of patrolsimsrc without its "pir-"
   std::optional<Properties> head;     // of pantiltsink
   std::optional<RecorderSettings> recorder;
   Lines lines;

@@ -221,9 +221,7 @@ void Camera::on_message(GstMessage* message) {
     }
     case GST_MESSAGE_EOS:
       if (state_ == State::running) {
-        const bool is_file =
-            settings_.source.kind == SourceKind::file || settings_.source.kind == SourceKind::world;
-        if (!is_file) {
+        if (!waits_for_reader(settings_.source.kind)) {
           fail("camera", "the stream ended");
           break;
         }

@@ -46,10 +46,10 @@ void Camera::drop_frames(const char* queue, std::atomic<bool>& pass) {
 }
 
 // In front of the decoder and of the detection, so that what is late costs next to nothing and the next frame is younger.
-// One thread goes through both. A file waits for its reader and is never late.
+// One thread goes through both. A file and a simulated robot wait for
+// their reader and are never late.
 void Camera::drop_late_frames() {
-  const SourceKind kind = settings_.source.kind;
-  if (kind == SourceKind::file || kind == SourceKind::world) return;
+  if (waits_for_reader(settings_.source.kind)) return;
   late_ = {};
   for (const char* name : {"decoder", "detect"}) {
     g_autoptr(GstElement) found = element(name);

@@ -33,13 +33,10 @@ struct Table {
   std::string_view element, key, name;
 };
 constexpr Table kTables[] = {
-    {"detect", "detection", "[camera.detection]"},
-    {"persons", "persons", "[camera.persons]"},
-    {"fusion", "fusion", "[camera.fusion]"},
-    {"sensors", "sensors", "[camera.sensors]"},
-    {"head", "head", "[camera.head]"},
-    {"recorder", "recorder", "[camera.recorder]"},
-    {"mqtt", "mqtt", "[mqtt]"},
+    {"detect", "detection", "[camera.detection]"}, {"persons", "persons", "[camera.persons]"},
+    {"fusion", "fusion", "[camera.fusion]"},       {"sensors", "sensors", "[camera.sensors]"},
+    {"patrol", "patrol", "[camera.patrol]"},       {"head", "head", "[camera.head]"},
+    {"recorder", "recorder", "[camera.recorder]"}, {"mqtt", "mqtt", "[mqtt]"},
 };
 
 const Table* table_of(std::string_view element) {
@@ -54,6 +51,13 @@ std::uint32_t line_of(const Lines& lines, std::string_view key, std::uint32_t ot
 
 std::string is(std::string_view key, std::string_view where, std::string_view value) {
   return "\"" + std::string(key) + "\" of " + std::string(where) + " is \"" + std::string(value) + "\"";
+}
+
+// As the file has it: the sensors of a simulated robot are properties of the robot.
+std::string stated(const Assignment& one, std::string_view where) {
+  constexpr std::string_view kSensor = "pir-";
+  if (!one.property.starts_with(kSensor)) return is(one.property, where, one.value);
+  return is(std::string_view(one.property).substr(kSensor.size()), "[camera.sensors]", one.value);
 }
 
 // Whether a text has a word, which ends where a letter, a digit or a hyphen does not go on.
@@ -136,7 +140,7 @@ class Trying {
       if (element && set_property(element, one, wrong)) continue;
       const Table* table = table_of(one.element);
       mistake(one.line != 0 ? one.line : camera.line,
-              is(one.property, table ? table->name : "[[camera]]", one.value) + ": " + wrong);
+              stated(one, table ? table->name : "[[camera]]") + ": " + wrong);
     }
     for (const Table& table : kTables) {
       g_autoptr(GstElement) element =
@@ -161,8 +165,7 @@ class Trying {
           (fault.find('"' + one.value + '"') != fault.npos ||
            (one.value.find('/') != one.value.npos && fault.find(one.value) != fault.npos)))
         guilty = &one;
-    if (guilty != nullptr)
-      return mistake(guilty->line, is(guilty->property, table.name, guilty->value) + ": " + fault);
+    if (guilty != nullptr) return mistake(guilty->line, stated(*guilty, table.name) + ": " + fault);
     const std::uint32_t line = table.key == "mqtt" ? line_of(settings_.lines, table.key, 0)
                                                    : line_of(camera.lines, table.key, camera.line);
     mistake(line, std::string(table.name) + " cannot be used: " + fault);

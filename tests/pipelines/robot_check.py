@@ -19,6 +19,7 @@ CERBERUSD, HAS = os.path.abspath(sys.argv[1]), sys.argv[2:]
 PATIENCE = 60  # seconds for what takes one on an idle machine
 FRONT = '[[camera]]\nname = "front"\nkind = "test"\n'  # lines 1 to 3
 BACK = '[[camera]]\nname = "back"\nkind = "test"\n'
+PATROL = '[[camera]]\nname = "front"\nkind = "patrol"\n'
 VISCA = '[camera.head]\ndriver = "visca"\ndevice = "serial:/dev/ttyS9"\n'
 GPIO = '[camera.sensors]\ndriver = "gpio"\nlines = "1,2,3"\n'
 STEPPER = '[camera.head]\ndriver = "stepper-gpio"\ndevice = "{chip}"\ndevice-options = "pan=\'lines={lines}\'"\n'
@@ -126,6 +127,11 @@ MISTAKES = [
      8, ['tilt-max', 'beyond what the camera reaches', '-30 to 90']),
     ('[[camera]]\nname = "w"\nkind = "world"\nfile = "short"\nstart-pan = 80\n[camera.head]\npan-max = 10\n', 7,
      ['start-pan', '80', 'pan-max']),
+    (PATROL + '[camera.patrol]\npath = "at 100 100; wait 1"\n', 5, ['"path" of [camera.patrol]', '100 100 is not free']),
+    (PATROL + '[camera.patrol]\nseed = 2\nwalks = "go 1 1"\n', 6, ['"walks" of [camera.patrol]']),
+    (PATROL + '[camera.patrol]\nplan = "short"\n', 5, ['"plan" of [camera.patrol]', 'short']),
+    (PATROL + '[camera.patrol]\nplan = "no.plan"\n', 5, ['"plan"', 'no.plan', 'No such file']),
+    (PATROL + '[camera.sensors]\nbearings = "0,left"\n', 5, ['"bearings" of [camera.sensors]', 'left']),
 ]
 
 # What is no mistake of the file, but keeps a part from starting here and now.
@@ -142,6 +148,8 @@ LACKS = [
 
 RIGHT = [
     FRONT,
+    PATROL,
+    PATROL + '[camera.patrol]\nwalks = "at 8 7; go 8 11"\n[camera.sensors]\npreset = "am312"\n[camera.head]\n',
     FRONT + '[camera.head]\n[camera.sensors]\ndriver = "scripted"\nscript = "0,0,0,0; 1,1,0,0"\n',
     FRONT + '[camera.persons]\ndetector = "daimler"\nrequire = "person"\n',
     FRONT + '[camera.persons]\nenabled = false\n',

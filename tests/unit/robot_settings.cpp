@@ -185,6 +185,15 @@ START_TEST(every_mistake_is_reported_with_its_line) {
        "r.toml:3: kind = \"world\" is a simulated head's world"},
       {"[[camera]]\nname = \"a\"\nkind = \"world\"\nfile = \"w.avi\"\nhorizontal-fov = 70\n[camera.head]\n",
        "r.toml:5: \"horizontal-fov\", what the window shows, is less than"},
+      {"[[camera]]\nname = \"a\"\nkind = \"test\"\n[camera.patrol]\nspeed = 1\n",
+       "r.toml:4: [camera.patrol] is for kind = \"patrol\" only"},
+      {"[[camera]]\nname = \"a\"\nkind = \"patrol\"\n[camera.patrol]\nspeed = 3\n",
+       "r.toml:5: \"speed\" of [camera.patrol] is a number from 0.05 to 1.5"},
+      {"[[camera]]\nname = \"a\"\nkind = \"patrol\"\n[camera.sensors]\ndriver = \"gpio\"\n",
+       "r.toml:5: unknown key \"driver\" in [camera.sensors]"},
+      {"[[camera]]\nname = \"a\"\nkind = \"patrol\"\n[camera.head]\ndriver = \"visca\"\ndevice = "
+       "\"serial:/dev/tty9\"\n",
+       "r.toml:5: kind = \"patrol\" has a simulated head"},
       {"[[camera]]\nname = \"a\"\nkind = \"test\"\n[camera.head]\npan-max = -5\n",
        "r.toml:5: \"pan-max\" of [camera.head] is a number from 0 to 3600"},
       {"[[camera]]\nname = \"a\"\nkind = \"test\"\n[camera.head]\ndriver = \"visca\"\n",
@@ -307,7 +316,7 @@ START_TEST(all_mistakes_come_at_once_in_the_order_of_their_lines) {
   ck_assert_str_eq(found.c_str(),
                    "r.toml:2: unknown key \"prot\" in [page]: is \"port\" meant?\n"
                    "r.toml:5: \"kind\" of [[camera]] is one of \"test\", \"world\", \"file\", \"v4l2\", "
-                   "\"rtsp\", \"libcamera\", and not \"tset\"");
+                   "\"rtsp\", \"libcamera\", \"patrol\", and not \"tset\"");
 }
 END_TEST
 
@@ -396,6 +405,8 @@ START_TEST(the_examples_of_the_manual_and_the_demo_are_sound) {
   ck_assert_int_ge(examples, 2);
   const Settings demo = settings(read("pipelines/robot/demo.toml"));
   ck_assert(demo.cameras.at(0).source.kind == SourceKind::world);
+  const Settings patrol = settings(read("pipelines/robot/patrol.toml"));
+  ck_assert(patrol.cameras.at(0).source.kind == SourceKind::patrol);
 }
 END_TEST
 

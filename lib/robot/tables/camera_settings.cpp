@@ -77,6 +77,29 @@ constexpr Option kSensors[] = {
     {"script", K::text},
 };
 
+// A simulated robot's own.
+constexpr Option kPatrolSensors[] = {
+    {"preset", K::choice, 0, 0, "none hc-sr501 am312 sk-11"},
+    {"bearings", K::text},
+    {"field-of-view", K::number, 0.1, 180},
+    {"range", K::number, 0, 50},
+};
+
+constexpr Option kPatrol[] = {
+    {"plan", K::text},
+    {"path", K::text},
+    {"walks", K::text},
+    {"people", K::whole, 0, 16},
+    {"seed", K::whole, 0, 2147483647},
+    {"speed", K::number, 0.05, 1.5},
+    {"yaw-rate", K::number, 1, 60},
+    {"shake", K::number, 0, 5},
+    {"shake-kind", K::choice, 0, 0, "robot hand"},
+    {"camera-height", K::number, 0.1, 3},
+    {"noise", K::number, 0, 30},
+    {"inset", K::truth},
+};
+
 constexpr Option kHead[] = {
     {"driver", K::choice, 0, 0, "simulated external visca pelco-d onvif stepper-gpio servo-pwm v4l2"},
     {"device", K::text},
@@ -115,7 +138,8 @@ constexpr Option kRecorder[] = {
     {"trigger-zones", K::text},
 };
 
-constexpr std::array<std::string_view, 6> kKinds{"test", "world", "file", "v4l2", "rtsp", "libcamera"};
+constexpr std::array<std::string_view, 7> kKinds{"test", "world",     "file",  "v4l2",
+                                                 "rtsp", "libcamera", "patrol"};
 constexpr std::array<std::string_view, 3> kCodecs{"h264", "h265", "jpeg"};
 
 std::string* value_of(Properties& properties, std::string_view name) {
@@ -146,9 +170,16 @@ class CameraReader {
     if (const TomlValue* table = reader_.table("persons")) read_persons(*table);
     if (const TomlValue* table = reader_.table("fusion"))
       read_part(*table, "[camera.fusion]", kFusion, camera_.fusion);
+    const bool patrols = camera_.source.kind == SourceKind::patrol;
+    if (const TomlValue* table = reader_.table("patrol")) {
+      read_part(*table, "[camera.patrol]", kPatrol, camera_.source.patrol);
+      if (!patrols) mistakes_.push_back({table->line, "[camera.patrol] is for kind = \"patrol\" only"});
+    }
     if (const TomlValue* table = reader_.table("sensors")) {
-      read_part(*table, "[camera.sensors]", kSensors, camera_.sensors.emplace());
-      if (table->find("driver") == nullptr)
+      read_part(*table, "[camera.sensors]",
+                patrols ? std::span<const Option>(kPatrolSensors) : std::span<const Option>(kSensors),
+                camera_.sensors.emplace());
+      if (!patrols && table->find("driver") == nullptr)
         mistakes_.push_back(
             {table->line,
              "[camera.sensors] needs a \"driver\": gpio, iio, evdev, external, replay or scripted"});
@@ -209,7 +240,8 @@ class CameraReader {
     std::size_t kind = 0, codec = 0;
     const bool known = reader_.choice("kind", kind, kKinds);
     if (!reader_.has("kind"))
-      reader_.complain("kind", "a [[camera]] needs a \"kind\": test, world, file, v4l2, rtsp or libcamera");
+      reader_.complain("kind",
+                       "a [[camera]] needs a \"kind\": test, world, file, v4l2, rtsp, libcamera or patrol");
     source.kind = static_cast<SourceKind>(kind);
     reader_.text("device", source.device);
     reader_.text("uri", source.uri);
@@ -236,8 +268,8 @@ class CameraReader {
     only_with({"uri", "record-uri", "user", "password-file", "password-credential", "codec"}, {rtsp});
     only_with({"file", "loop"}, {SourceKind::file, world});
     only_with({"wide-fov", "start-pan", "start-tilt"}, {world});
-    only_with({"width", "height"}, {test, world, v4l2, libcamera});
-    only_with({"framerate"}, {test, v4l2, libcamera});
+    only_with({"width", "height"}, {test, world, v4l2, libcamera, patrol});
+    only_with({"framerate"}, {test, v4l2, libcamera, patrol});
     if (source.kind == v4l2) needs("device", source.device);
     if (source.kind == rtsp) needs("uri", source.uri);
     if (source.kind == SourceKind::file || source.kind == world) needs("file", source.file);
@@ -264,7 +296,7 @@ class CameraReader {
                  Properties& into) {
     TableReader reader(table, where, mistakes_);
     reader.properties(options, into);
-    for (const char* key : {"rules-file", "calibration", "location"}) {
+    for (const char* key : {"rules-file", "calibration", "location", "plan"}) {
       std::string* path = value_of(into, key);
       if (path == nullptr) continue;
       *path = below(folder_, *path);
@@ -308,6 +340,9 @@ class CameraReader {
     if (camera_.source.kind == SourceKind::world && kind != "simulated")
       reader.complain("driver",
                       "kind = \"world\" has a simulated head: its window cannot be turned by another");
+    if (camera_.source.kind == SourceKind::patrol && kind != "simulated")
+      reader.complain("driver",
+                      "kind = \"patrol\" has a simulated head: its camera cannot be turned by another");
     if (kind == "external" && !reader.has("command"))
       reader.complain("driver", "driver = \"external\" needs \"command\"");
     if (kind != "external" && kind != "simulated" && !reader.has("device"))
