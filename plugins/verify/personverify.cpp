@@ -15,8 +15,9 @@
  *   needs higher scores;
  * - before a camera that stands a motion track is published as it is once it has gone a quarter of its
  *   height, or a look has shown it: then also with the type `person` and a confidence. Before one that moves it is
- *   published once a look has shown it, or while it is fast, and a network's box goes before its own where the two differ
- *   by more than half. Where the scene is not calm (the picture shakes or blurs, or near things pass) motion tracks do not count;
+ *   published once a look has shown it, or once it has moved by itself for a third of a second. There a network's box goes
+ *   before its own where the two differ by more than half, and a window where its own is a small part of it. Where the scene
+ *   is not calm (the picture shakes or blurs, or near things pass) motion tracks do not count;
  * - a person whom no motion track shows is followed by the picture from look to look;
  * - a motion track is a person once a look has shown it, and only moves again once looks that should see it, as they have
  *   seen it smaller, have missed it often enough: five of one that was seen once, at the threshold. The confidence

@@ -36,9 +36,9 @@ struct EvidenceTrack {
   double least_seen = kNever;  // its smallest height, pixels, at which a sure look has shown it
   double quality = 0;  // mean of what the last looks gave: of two tracks of one body the better one stays
   double age = 0, unseen = 0, since_motion = 1e9, since_look = 1e9;  // s; since a look has shown it
-  double fast = 0;                                 // s for which its motion track has been fast
-  Point centre, velocity;                          // velocity: h/s relative to the scene
-  double height = 0, shape = 0;                    // shape: width / height
+  double moving = 0;             // s for which its inside has moved more than what is around it
+  Point centre, velocity;        // velocity: h/s relative to the scene
+  double height = 0, shape = 0;  // shape: width / height
   double place_variance = 0, height_variance = 0;  // pixels^2; of the logarithm
 
   static EvidenceTrack begin(const Box& box);

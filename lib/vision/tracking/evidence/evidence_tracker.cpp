@@ -112,13 +112,13 @@ bool EvidenceTracker::inside_moves(const Box& box, bool calm) const {
 
 // Pairs the tracks rows_ with the boxes columns_ so that the overlaps are largest in all; each pair reaches the gate.
 // row, column: boxes of their elements. use: called with a row's element, a column's and their overlap.
-template <typename RowBox, typename ColumnBox, typename Use>
-void EvidenceTracker::pair_by_overlap(const RowBox& row, const ColumnBox& column, const Use& use) {
+template <typename Overlap, typename Use>
+void EvidenceTracker::pair_by_overlap(const Overlap& overlap_of, const Use& use) {
   if (rows_.empty() || columns_.empty()) return;
   cost_.assign(rows_.size() * columns_.size(), Assignment::kForbidden);
   for (std::size_t i = 0; i < rows_.size(); ++i)
     for (std::size_t j = 0; j < columns_.size(); ++j) {
-      const double overlap = intersection_over_union(row(rows_[i]), column(columns_[j]));
+      const double overlap = overlap_of(rows_[i], columns_[j]);
       if (overlap >= p_.gate) cost_[i * columns_.size() + j] = 1 - overlap;
     }
   const auto pairs =
@@ -131,18 +131,29 @@ void EvidenceTracker::pair_by_overlap(const RowBox& row, const ColumnBox& column
   }
 }
 
+// Whether the motion track whose place it has shows a part of the body only, as parallax leaves of who walks ahead of a camera
+// that moves.
+bool EvidenceTracker::is_piece(const EvidenceTrack& t, const Box& body) const {
+  return !looks_enclose_ && t.mirrors && camera_stood_ < p_.still_time &&
+         share_within(t.looked(), body) >= p_.body.nested && t.looked().area() < p_.adopt * body.area();
+}
+
 void EvidenceTracker::match_look(bool sure) {
   rows_.clear(), columns_.clear();
   for (std::size_t i = 0; i < tracks_.size(); ++i)
     if (!tracks_[i].hit && !tracks_[i].holds_several && tracks_[i].looked().area() > 0) rows_.push_back(i);
   for (std::size_t j = 0; j < bodies_.size(); ++j)
     if ((bodies_[j].score >= p_.sure) == sure && bodies_[j].score > p_.least) columns_.push_back(j);
-  const auto looked = [&](std::size_t i) { return tracks_[i].looked(); };
-  const auto box_of = [&](std::size_t j) { return bodies_[j].box; };
-  pair_by_overlap(looked, box_of, [&](std::size_t i, std::size_t j, double overlap) {
+  const auto overlap_of = [&](std::size_t i, std::size_t j) {
+    const double overlap = intersection_over_union(tracks_[i].looked(), bodies_[j].box);
+    return sure && is_piece(tracks_[i], bodies_[j].box) ? std::max(overlap, p_.gate) : overlap;
+  };
+  pair_by_overlap(overlap_of, [&](std::size_t i, std::size_t j, double overlap) {
     EvidenceTrack& t = tracks_[i];
     const PersonDetection& body = bodies_[j];
-    if (t.mirrors && sure && looks_enclose_ && overlap < p_.leave && camera_stood_ < p_.still_time) {
+    const bool misfits = looks_enclose_ ? t.mirrors && overlap < p_.leave && camera_stood_ < p_.still_time
+                                        : is_piece(t, body.box);
+    if (sure && misfits) {
       t.mirrors = false;
       t.distrust();
     }
@@ -208,13 +219,12 @@ void EvidenceTracker::mirror(EvidenceTrack& t, const Track& motion) const {
   t.kind = motion.kind;
   t.holds_several = t.holds_several || t.kind == RegionKind::group;
   if (motion.state != TrackState::seen) {
-    t.fast = 0;
+    t.moving = 0;
     return;
   }
   t.since_motion = t.unseen = 0;
-  if (t.published) return;  // whether it is fast decides nothing else
-  const bool fast = std::hypot(motion.vx, motion.vy) >= p_.fast * motion.box.height;
-  t.fast = fast && inside_moves(t.box(), false) ? t.fast + frame_.seconds : 0;
+  if (t.published) return;  // it decides nothing else
+  t.moving = inside_moves(t.box(), false) ? t.moving + frame_.seconds : 0;
 }
 
 void EvidenceTracker::match_motion(std::span<const Track> motion) {
@@ -224,9 +234,10 @@ void EvidenceTracker::match_motion(std::span<const Track> motion) {
   for (std::size_t j = 0; j < motion.size(); ++j)
     if (!used_[j] && motion[j].state == TrackState::seen && motion[j].kind != RegionKind::group)
       columns_.push_back(j);
-  const auto present = [&](std::size_t i) { return tracks_[i].box(); };
-  const auto box_of = [&](std::size_t j) { return reduced(motion[j].box); };
-  pair_by_overlap(present, box_of, [&](std::size_t i, std::size_t j, double overlap) {
+  const auto overlap_of = [&](std::size_t i, std::size_t j) {
+    return intersection_over_union(tracks_[i].box(), reduced(motion[j].box));
+  };
+  pair_by_overlap(overlap_of, [&](std::size_t i, std::size_t j, double overlap) {
     EvidenceTrack& t = tracks_[i];
     t.motion_id = motion[j].id;
     t.evidence = p_.ceiling;
@@ -312,7 +323,8 @@ void EvidenceTracker::end_tracks() {
   for (EvidenceTrack& t : tracks_) {
     t.travelled = t.travelled || t.travels(p_.travel);
     t.moved = t.moved || t.travelled;
-    const bool alone = t.mirrors && t.travelled && (camera_stood_ >= p_.still_time || t.fast >= p_.fast_time);
+    const bool alone =
+        t.mirrors && t.travelled && (camera_stood_ >= p_.still_time || t.moving >= p_.moving_time);
     // Windows are mistaken at one place of a still picture again and again; a person there moves at some time.
     const bool person =
         t.shown() && (t.mirrors || t.moved || looks_enclose_ || camera_stood_ < p_.still_time);

@@ -83,9 +83,10 @@ class EvidenceTracker {
   Box reduced(const Box& box) const;
   bool should_be_seen(const EvidenceTrack& track) const;
   bool inside_moves(const Box& box, bool calm) const;
+  bool is_piece(const EvidenceTrack& track, const Box& body) const;
   void take_look(const EvidenceLook& look);
-  template <typename RowBox, typename ColumnBox, typename Use>
-  void pair_by_overlap(const RowBox& row, const ColumnBox& column, const Use& use);
+  template <typename Overlap, typename Use>
+  void pair_by_overlap(const Overlap& overlap_of, const Use& use);
   void match_look(bool sure);
   void begin_at(const PersonDetection& body);
   void take_motion(std::span<const Track> motion);
