@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "overlay/cairo_helpers.h"
+#include "overlay/marks/radar.h"
 #include "overlay/marks/target_marks.h"
 
 namespace cerberus::overlay {
@@ -65,6 +66,8 @@ void Painter::paint(const Scene& scene, std::vector<Patch>& patches) {
   line_ = line;
   font_ = 9.5 * std::pow(std::max(std::min(frame_.width, frame_.height), 120) / 240.0, 0.6);
   taken_.assign(scene.covered.begin(), scene.covered.end());
+  const Patch radar = scene.radar.field_of_view > 0 ? draw_radar(scene.radar, frame_, pool_) : Patch();
+  if (radar.pixels) taken_.push_back(radar.area);
   objects_.clear();
   for (const Object& object : scene.objects)
     if (const auto inside = clipped(object, frame_)) objects_.push_back(*inside);
@@ -81,6 +84,7 @@ void Painter::paint(const Scene& scene, std::vector<Patch>& patches) {
   if (scene.crosshair) paint_crosshair(patches);
   if (const Patch& panel = panel_.patch(scene.system, font_, frame_, pool_); panel.pixels)
     patches.push_back(panel);
+  if (radar.pixels) patches.push_back(radar);
   scene_ = nullptr;
 }
 

@@ -37,9 +37,27 @@ struct System {
   std::vector<Light> lights;  // from left to right
 };
 
+// Radians, clockwise from where the robot looks.
+struct RadarSensor {
+  double bearing = 0, left = 0, right = 0;  // its sector: so far to both sides of the bearing
+  std::uint8_t reading = 2;                 // as a light's
+  bool doubtful = false;  // the reading is not counted: the robot's own motion may be its cause
+};
+struct RadarObject {
+  std::uint32_t id = 0;
+  double bearing = 0, distance = 0;  // metres
+  bool target = false;
+};
+struct Radar {
+  double pan = 0, field_of_view = 0;  // of the camera; no view, no radar
+  std::vector<RadarSensor> sensors;
+  std::vector<RadarObject> objects;
+};
+
 struct Scene {
   vision::Size frame;
   System system;
+  Radar radar;
   std::span<const Object> objects;
   std::span<const Trails::Trail> trails;
   std::span<const Area>

@@ -19,7 +19,12 @@
  * (red: detects, blue: does not, grey: no valid reading) in the order of their bearings from left to right, with its
  * number, counted as in `bearings` of `pirsrc`, the rule that fired (its number if it has one, and its name) and the
  * action. The track that the head follows (`pirfusion`) is marked by thick corners round the box. Compositions that
- * other elements attached to the frame (`inset` of `virtualptz`) lie on top.
+ * other elements attached to the frame (`inset` of `virtualptz` and `patrolsimsrc`) lie on top.
+ *
+ * With `horizontal-fov` a radar is in the lower left corner, 12 m around the robot, which looks up: in yellow what the camera
+ * sees, the sensors' sectors (red: detects, pale red: detects, and is not counted because the robot's own motion may be the
+ * cause; halfway to the neighbours, at most 60 degrees to both sides) and the objects in the colours of their identities, the
+ * target with a white rim. Of an object without a known distance the feet's height in the picture stands for it.
  *
  * Reads the region, camera-motion, pose and fusion metas. Posts no messages. Regions without a tracker are drawn
  * in white, without identity and trail. What reaches beyond the frame is cut at its edge.
@@ -53,6 +58,7 @@
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/text.hpp"
 #include "composition.hpp"
+#include "overlay/marks/radar.h"
 #include "overlay/painter.h"
 #include "overlay/trails.h"
 #include "sensing/angles.h"
@@ -89,6 +95,7 @@ struct Settings {
   bool boxes = true, ids = true, speeds = true, trails = true, crosshair = false, system = true;
   guint64 trail_time = 2 * GST_SECOND;
   double line_width = 0;
+  double horizontal_fov = 0;
 };
 
 constexpr double kWidestLine = 64;
@@ -111,6 +118,9 @@ const Property<Settings> kProperties[] = {
              "Show, where they are known, the head's pan and tilt, the PIR sensors as red and blue lights, "
              "and the rule and "
              "the action of the fusion"),
+    property("horizontal-fov", &Settings::horizontal_fov, 0, 179,
+             "Angle that the camera sees over the picture's width, degrees: a radar in the lower left corner "
+             "shows it, the sensors' sectors and the objects; 0 = no radar"),
 };
 
 struct State {  // streaming thread only
@@ -378,6 +388,37 @@ overlay::System read_system(GstBuffer* buffer, GstClockTime time) {
   return system;
 }
 
+// What a radar shows. An object whose bearing and distance are not known is where it is in the picture, and the lower its
+// feet the nearer, as on the robot's page.
+overlay::Radar read_radar(const State& state, GstBuffer* buffer, GstClockTime time, double fov) {
+  using cerberus::sensing::radians;
+  overlay::Radar radar;
+  radar.field_of_view = radians(fov);
+  if (const auto look = cerberus::plugin::look_of(buffer, time)) radar.pan = look->pan;
+  if (!std::isfinite(radar.pan)) radar.pan = 0;
+  if (const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer)) {
+    for (guint i = 0; i < fusion->n_sensors; ++i)
+      if (std::isfinite(fusion->bearings[i]))
+        radar.sensors.push_back({cerberus::sensing::wrap(radians(fusion->bearings[i])), 0, 0,
+                                 fusion->sensors[i], (fusion->doubtful >> i & 1) != 0});
+    overlay::divide_round(radar.sensors);
+  }
+  const double width = GST_VIDEO_INFO_WIDTH(&state.info), height = GST_VIDEO_INFO_HEIGHT(&state.info);
+  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
+  for (guint i = 0; i < regions->len; ++i) {
+    const auto& region = *static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
+    const double aside =
+        std::isfinite(region.bearing)
+            ? radians(region.bearing)
+            : std::atan(((region.x + region.width / 2) / width - .5) * 2 * std::tan(radar.field_of_view / 2));
+    const double feet = std::clamp((region.y + region.height) / height, 0., 1.);
+    const double away =
+        std::isfinite(region.distance) ? region.distance : (.95 - .65 * feet) * overlay::kRadarReach;
+    radar.objects.push_back({state.objects[i].id, radar.pan + aside, away, state.objects[i].target});
+  }
+  return radar;
+}
+
 GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, GstBuffer* buffer) {
   return cerberus::guarded(transform, GST_FLOW_ERROR, [&]() -> GstFlowReturn {
     Private& self = *cerberus_motion_overlay_self(transform)->priv;
@@ -403,6 +444,8 @@ GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, 
     scene.speeds = settings.speeds;
     scene.crosshair = settings.crosshair;
     if (settings.system) scene.system = read_system(buffer, running);
+    if (settings.horizontal_fov > 0)
+      scene.radar = read_radar(state, buffer, running, settings.horizontal_fov);
     state.patches.clear();
     state.painter.paint(scene, state.patches);
 

@@ -184,6 +184,59 @@ GST_START_TEST(head_sensors_and_decision_are_shown_in_the_corner) {
 }
 GST_END_TEST
 
+// Radius .13 x 240 = 31.2 pixels for 12 m in a rim of 3.12, .02 x 320 = 6.4 from the edges: the middle is (40.72, 199.28).
+GST_START_TEST(the_radar_is_drawn_where_the_lens_is_known) {
+  const std::string caps = caps_string("RGBx", kWidth, kHeight);
+  const auto through_line = [&](const char* line) {
+    Harness h = started(line, caps);
+    GstBuffer* in = frame(info_of(caps));
+    CerberusPose pose;
+    cerberus_pose_init(&pose);
+    pose.pan = -90;
+    cerberus_buffer_set_pose(in, &pose);
+    CerberusFusion fusion;
+    cerberus_fusion_init(&fusion);
+    fusion.n_sensors = 2;
+    fusion.bearings[1] = 180;
+    fusion.sensors[0] = fusion.sensors[1] = 1;
+    fusion.doubtful = 2;
+    cerberus_buffer_set_fusion(in, &fusion);
+    CerberusRegion known = region(1, 200, 20, 20, 30), unknown = region(2, 230, 40, 20, 80);
+    known.bearing = 15, known.distance = 4;
+    add(in, known);
+    add(in,
+        unknown);  // 16.1 degrees to the right of the axis; its feet at the half: (.95 - .65 / 2) x 12 = 7.5 m
+    GstBuffer* out = through(h.get(), in);
+    const auto all = bytes(out);
+    gst_buffer_unref(out);
+    return all;
+  };
+  const auto all = through_line("motionoverlay horizontal-fov=60 show-system=false");
+  const auto at = [&](double bearing, double metres) {
+    const double angle = bearing * G_PI / 180, away = metres / 12 * 31.2;
+    const auto x = std::size_t(40.72 + away * std::sin(angle)),
+               y = std::size_t(199.28 - away * std::cos(angle));
+    return &all[4 * (y * kWidth + x)];
+  };
+  fail_unless(at(0, 8)[0] > 150 && at(0, 8)[2] < 100);                             // detects
+  fail_unless(at(180, 8)[0] < at(0, 8)[0] - 40 && at(180, 8)[0] > at(180, 8)[2]);  // does, and does not count
+  fail_unless(at(-105, 9)[0] > 150 && at(-105, 9)[1] > 120 && at(-105, 9)[2] < 80);  // the view
+  fail_unless(at(-90 + 15, 4)[0] > 200 && at(-90 + 15, 4)[2] < 60);                  // 1 is orange
+  fail_unless(at(-90 + 16.1, 7.5)[2] > 200 && at(-90 + 16.1, 7.5)[0] < 120);         // 2 is blue
+  const auto none = through_line("motionoverlay show-system=false");
+  for (std::size_t y = 160; y < kHeight; ++y)
+    for (std::size_t x = 0; x < 80; ++x) fail_unless_equals_int(none[4 * (y * kWidth + x)], 100);
+}
+GST_END_TEST
+
+GST_START_TEST(labels_keep_clear_of_the_radar) {
+  Harness h = attaching("motionoverlay show-boxes=false show-trails=false horizontal-fov=60");
+  const auto low = drawn(h.get(), with_region(info_of(kCaps), region(2, 20, 2, 40, 158)));
+  fail_unless_equals_int(low.size(), 2);
+  fail_unless(low[0].y < 100, "%d", low[0].y);  // below the box is the radar
+}
+GST_END_TEST
+
 GST_START_TEST(nothing_is_drawn_beyond_the_frame) {
   Harness h = attaching("motionoverlay line-width=9 crosshair=true");
   const double far = 1e6;
@@ -429,6 +482,8 @@ static Suite* motionoverlay_suite() {
   tcase_add_test(tc, tiny_and_odd_frames_are_drawn_on);
   tcase_add_test(tc, lights_lie_as_their_sensors_look);
   tcase_add_test(tc, head_sensors_and_decision_are_shown_in_the_corner);
+  tcase_add_test(tc, the_radar_is_drawn_where_the_lens_is_known);
+  tcase_add_test(tc, labels_keep_clear_of_the_radar);
   tcase_add_test(tc, nothing_is_drawn_beyond_the_frame);
   tcase_add_test(tc, what_lies_outside_or_is_nonsense_is_not_drawn);
   tcase_add_test(tc, speeds_and_distances_that_are_not_numbers_leave_a_label_without_them);

@@ -5,14 +5,17 @@
 #include <cairo.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <random>
 #include <vector>
 
 #include "overlay/cairo_helpers.h"
 #include "overlay/marks/glyphs.h"
 #include "overlay/marks/line_kernels.h"
+#include "overlay/marks/radar.h"
 #include "overlay/marks/system_panel.h"
 #include "overlay/marks/target_marks.h"
 #include "overlay/marks/trail_line.h"
@@ -220,6 +223,55 @@ START_TEST(the_panel_shows_the_sensors_as_lights_in_their_order) {
 }
 END_TEST
 
+// Radius .13 x 480 = 62.4 pixels in a rim of 6.24, .02 x 640 = 12.8 from the edges: the middle is (81.44, 398.56).
+START_TEST(the_radar_shows_sensors_view_and_objects_where_they_are) {
+  PicturePool pool;
+  Radar radar;
+  radar.field_of_view = std::numbers::pi / 3;
+  radar.pan = std::numbers::pi / 2;  // to the right
+  constexpr double kSide = 2 * std::numbers::pi / 3;
+  radar.sensors = {{0, 0, 0, 1, false}, {-kSide, 0, 0, 0, false}, {kSide, 0, 0, 1, true}};
+  divide_round(radar.sensors);
+  radar.objects = {{1, std::numbers::pi / 2, 6, true}, {2, std::numbers::pi, 100, false}};
+  const std::vector<Patch> drawn{draw_radar(radar, kFrame, pool)};
+  const auto at = [&](double bearing, double metres) {  // red, green, blue
+    const double away = metres / 12 * 62.4;
+    const std::uint32_t word = pixel(drawn, static_cast<int>(81.44 + away * std::sin(bearing)),
+                                     static_cast<int>(398.56 - away * std::cos(bearing)));
+    return std::array{static_cast<int>(word >> 16 & 255), static_cast<int>(word >> 8 & 255),
+                      static_cast<int>(word & 255)};
+  };
+  const auto ahead = at(.2, 9), left = at(-kSide, 9), right = at(kSide + .6, 9), view = at(1.8, 9);
+  ck_assert(ahead[0] > 150 && ahead[1] < 60);                 // detects
+  ck_assert(left[2] > left[0] + 20 && left[0] < 80);          // does not
+  ck_assert(right[0] > right[2] + 20 && right[0] < 120);      // does not count
+  ck_assert(view[0] > 120 && view[1] > 100 && view[2] < 60);  // yellow
+  ck_assert(at(.95, 9)[0] > 150 && at(-.95, 9)[0] > 150 && at(1.15, 9)[1] > 60 && at(-1.15, 9)[0] < 80);
+  const Color one = identity_color(1);
+  const auto dot = at(std::numbers::pi / 2, 6), rim = at(std::numbers::pi / 2, 6 - 1.6);
+  ck_assert(std::abs(dot[0] - 255 * one.r) < 12 && std::abs(dot[2] - 255 * one.b) < 12);
+  ck_assert(rim[0] > 200 && rim[1] > 200 && rim[2] > 200);  // of the target
+  const Color two = identity_color(2);
+  ck_assert(std::abs(at(std::numbers::pi, 11.9)[2] - 255 * two.b) < 12);  // at the rim, whatever its distance
+  expect(pixel(drawn, 12, 330), 0, "corner");
+  ck_assert_ptr_null(draw_radar(radar, {0, 0, 80, 60}, pool).pixels.get());
+}
+END_TEST
+
+START_TEST(sectors_end_halfway_to_the_neighbours) {
+  const auto degrees = [](double radians) { return std::lround(radians * 180 / std::numbers::pi); };
+  const auto radians = [](double degrees) { return degrees * std::numbers::pi / 180; };
+  std::vector<RadarSensor> three{{radians(-20)}, {0}, {radians(20)}}, alone{{1}},
+      behind{{radians(170)}, {radians(-150)}};
+  for (auto* sensors : {&three, &alone, &behind}) divide_round(*sensors);
+  ck_assert(degrees(three[0].left) == 60 && degrees(three[0].right) == 10);
+  ck_assert(degrees(three[1].left) == 10 && degrees(three[1].right) == 10);
+  ck_assert(degrees(alone[0].left) == 60 && degrees(alone[0].right) == 60);
+  ck_assert(degrees(behind[0].right) == 20 && degrees(behind[1].left) == 20 &&
+            degrees(behind[1].right) == 60);
+}
+END_TEST
+
 // Arms from 8.64 to 28.8 from the middle (320, 240), 2 wide, casing 4.4 wide.
 START_TEST(the_crosshair_leaves_its_middle_free) {
   Painter painter;
@@ -304,9 +356,11 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite_on_every_target(
-      "marks", {letters_are_those_of_cairo_side_by_side, a_label_is_a_pill_in_the_colour_of_its_identity,
-                two_bars_mark_an_object_that_stands, only_the_numbers_of_a_label_are_drawn_again,
-                brackets_stand_at_the_corners_of_the_target,
-                the_panel_shows_the_sensors_as_lights_in_their_order, the_crosshair_leaves_its_middle_free,
-                a_fresh_trail_is_a_line_with_a_casing, depths_are_those_of_the_definition});
+      "marks",
+      {letters_are_those_of_cairo_side_by_side, a_label_is_a_pill_in_the_colour_of_its_identity,
+       two_bars_mark_an_object_that_stands, only_the_numbers_of_a_label_are_drawn_again,
+       brackets_stand_at_the_corners_of_the_target, the_panel_shows_the_sensors_as_lights_in_their_order,
+       the_radar_shows_sensors_view_and_objects_where_they_are, sectors_end_halfway_to_the_neighbours,
+       the_crosshair_leaves_its_middle_free, a_fresh_trail_is_a_line_with_a_casing,
+       depths_are_those_of_the_definition});
 }
