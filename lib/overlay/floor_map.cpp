@@ -32,7 +32,7 @@ struct Drawing {
         cr(cairo_create(surface.get())) {}
 };
 
-void rectangle(cairo_t* cr, const sim::Rectangle& area) {
+void rectangle(cairo_t* cr, const FloorPlan::Area& area) {
   cairo_rectangle(cr, area.left, area.top, area.right - area.left, area.bottom - area.top);
 }
 
@@ -42,29 +42,32 @@ void circle(cairo_t* cr, double x, double y, double radius) {
 }
 
 // How far one sees the floor over low furniture: to a wall or a pillar.
-double free_distance(const sim::FloorPlan& plan, double x, double y, double direction) {
+double free_distance(const FloorPlan& plan, double x, double y, double direction) {
   const double dx = std::cos(direction), dy = std::sin(direction);
   double away = 0;
   for (; away < kLongest; away += kRayStep) {
     const double at_x = x + away * dx, at_y = y + away * dy;
-    const bool pillar = std::ranges::any_of(plan.pillars, [&](const sim::Pillar& one) {
+    const bool room = std::ranges::any_of(plan.rooms, [&](const FloorPlan::Area& area) {
+      return at_x >= area.left && at_x <= area.right && at_y >= area.top && at_y <= area.bottom;
+    });
+    const bool pillar = std::ranges::any_of(plan.pillars, [&](const FloorPlan::Pillar& one) {
       return std::hypot(at_x - one.x, at_y - one.y) < one.radius;
     });
-    if (pillar || plan.space_at(at_x, at_y) < 0) break;
+    if (pillar || !room) break;
   }
   return std::max(0., away - kRayStep);
 }
 
 }  // namespace
 
-FloorMap::FloorMap(sim::FloorPlan plan, vision::Size frame) : plan_(std::move(plan)) {
+FloorMap::FloorMap(FloorPlan plan, vision::Size frame) : plan_(std::move(plan)) {
   double right = 0, bottom = 0;
-  for (const sim::Space& space : plan_.spaces) {
-    const bool first = &space == &plan_.spaces.front();
-    left_ = first ? space.area.left : std::min(left_, space.area.left);
-    top_ = first ? space.area.top : std::min(top_, space.area.top);
-    right = first ? space.area.right : std::max(right, space.area.right);
-    bottom = first ? space.area.bottom : std::max(bottom, space.area.bottom);
+  for (const FloorPlan::Area& room : plan_.rooms) {
+    const bool first = &room == &plan_.rooms.front();
+    left_ = first ? room.left : std::min(left_, room.left);
+    top_ = first ? room.top : std::min(top_, room.top);
+    right = first ? room.right : std::max(right, room.right);
+    bottom = first ? room.bottom : std::max(bottom, room.bottom);
   }
   left_ -= kMargin, top_ -= kMargin, right += kMargin, bottom += kMargin;
   constexpr double kFine = 100;  // inset_size() takes whole numbers: centimetres
@@ -83,11 +86,11 @@ void FloorMap::draw_ground() {
   cairo_paint(cr);
   cairo_scale(cr, scale_, scale_);
   cairo_translate(cr, -left_, -top_);
-  for (const sim::Space& space : plan_.spaces) rectangle(cr, space.area);
+  for (const FloorPlan::Area& room : plan_.rooms) rectangle(cr, room);
   set_color(cr, kFloor);
   cairo_fill(cr);
-  for (const sim::Furniture& box : plan_.boxes) rectangle(cr, box.area);
-  for (const sim::Pillar& pillar : plan_.pillars) circle(cr, pillar.x, pillar.y, pillar.radius);
+  for (const FloorPlan::Area& thing : plan_.furniture) rectangle(cr, thing);
+  for (const FloorPlan::Pillar& pillar : plan_.pillars) circle(cr, pillar.x, pillar.y, pillar.radius);
   set_color(cr, kThing);
   cairo_fill(cr);
 }

@@ -7,10 +7,21 @@
 #include <span>
 #include <vector>
 
-#include "sim/house/floor_plan.h"
 #include "vision/image/image.h"
 
 namespace cerberus::overlay {
+
+// Metres, x to the right and y downwards. A doorway is a room of its own between two.
+struct FloorPlan {
+  struct Area {
+    double left = 0, top = 0, right = 0, bottom = 0;
+  };
+  struct Pillar {
+    double x = 0, y = 0, radius = 0;
+  };
+  std::vector<Area> rooms, furniture;
+  std::vector<Pillar> pillars;
+};
 
 // Metres of the plan; radians clockwise from x.
 struct FloorScene {
@@ -26,7 +37,7 @@ struct FloorScene {
 class FloorMap {
  public:
   // For the corner of a picture of this size. Nothing is drawn where there is no room for it: size() is {0, 0}.
-  FloorMap(sim::FloorPlan plan, vision::Size frame);
+  FloorMap(FloorPlan plan, vision::Size frame);
   vision::Size size() const { return size_; }
   // picture: of size(), words of premultiplied alpha, red, green and blue from the highest byte down. The robot's way is
   // that of all calls so far.
@@ -35,7 +46,7 @@ class FloorMap {
  private:
   void draw_ground();
 
-  sim::FloorPlan plan_;
+  FloorPlan plan_;
   vision::Size size_;
   double left_ = 0, top_ = 0, scale_ = 1;  // metres, and pixels a metre
   std::vector<std::uint32_t> ground_;      // the plan, drawn once

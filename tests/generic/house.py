@@ -260,13 +260,13 @@ def check_encoders(path):
             complain(path, f'jpegenc without "{BEFORE_JPEG}" in front')
 
 
-# A video of a telephone may lie on its side and say so. Network cameras do not turn their pictures.
+# A video of a telephone may lie on its side and say so. Network cameras do not turn their pictures, nor do simulated ones.
 def check_upright(path):
     lines = path.read_text('utf-8', errors='replace') if path.suffix in {'.launch', '.md', '.cpp'} else ''
     for line in [lines] if path.suffix == '.launch' else re.findall('.*location=walk.mp4.*', lines):
         text = re.sub(r'\s+', ' ', re.sub('^#.*', '', line, flags=re.M))
         first = re.search(r'(\S+ \S+ )! (?:motiondetect|virtualptz)', text)
-        if first and first[1] != 'videoflip video-direction=auto ' and path.name != 'record-streams.launch':
+        if first and first[1] != 'videoflip video-direction=auto ' and path.name not in ('record-streams.launch', 'patrol.launch'):
             complain(path, 'no "videoflip video-direction=auto" in front of what detects')
 
 
