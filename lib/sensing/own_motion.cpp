@@ -11,7 +11,7 @@ namespace cerberus::sensing {
 
 namespace {
 
-// Metres to the nearest warm thing beside a way: an assumption. Guarded by bench-patrol.
+// Metres to the nearest warm thing beside a way: an assumption. Guarded by bench-pir_search.
 constexpr double kNearest = 2;
 
 bool is_in(const Arc& arc, double direction) {

@@ -45,7 +45,7 @@ class PulseDoubt {
   // Returns the time at which doubtful() changes if nothing else does: call update() then. kNever: it does not.
   Time due() const;
 
-  // Modules answer a little late, and reports of the body's motion are a little old: assumed. Guarded by bench-patrol.
+  // Modules answer a little late, and reports of the body's motion are a little old: assumed. Guarded by bench-pir_search.
   static constexpr Time kSettle = std::chrono::milliseconds(300);
 
  private:

@@ -15,7 +15,7 @@ class DoubtSearch {
  public:
   struct Parameters {
     // A look begins at a sector whose mean age (SeenAround::Unseen) is the first, and ends when that of what it is to
-    // see is below the second. swept on bench-patrol: begun at 2 s, the head looks around for 80 instead of 50 % of the
+    // see is below the second. swept on bench-pir_search: begun at 2 s, the head looks around for 80 instead of 50 % of the
     // time, at 6 s a person is in the picture .7 s later.
     Time begins = std::chrono::seconds(4), ends = std::chrono::seconds(3);
   };

@@ -13,7 +13,7 @@ namespace cerberus::fusion {
 class SeenAround {
  public:
   // Older sights are as good as none: a person who walks at 1.4 m/s has left a picture of 60 degrees 4 m away after
-  // 3.3 s. Guarded by bench-patrol.
+  // 3.3 s. Guarded by bench-pir_search.
   static constexpr Time kForgotten = std::chrono::seconds(6);
   // A direction that was missed for this long makes a place as old as can be: else a head in step with the turns of its
   // robot never sees some. Guarded by unit-doubt_search.

@@ -3,8 +3,8 @@
 // and what the robot's own motion makes of its sensors while no person is there. Sensor fusion and the control law are
 // this project's; time is the bench's own.
 //
-//   bench-patrol                      all, judged
-//   bench-patrol FB patrol,drive [40] these heads (lib/sim/head_kinds.h) and patrols, this number of seeds
+//   bench-pir_search                      all, judged
+//   bench-pir_search FB patrol,drive [40] these heads (lib/sim/head_kinds.h) and patrols, this number of seeds
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
