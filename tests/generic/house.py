@@ -272,7 +272,7 @@ def check_upright(path):
 
 def check_commands():
     explained = ('pipelines/demo', 'pipelines/encoder', 'pipelines/rtsp', 'pipelines/run', 'pipelines/setup', 'tests/run')
-    for command in (*explained, 'docs/generate'):
+    for command in (*explained, 'docs/generate', 'docs/patrol'):
         if not os.access(TOP / command, os.X_OK):
             complain(TOP / command, 'cannot be run')
     for command in explained:
