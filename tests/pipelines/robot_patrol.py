@@ -16,7 +16,7 @@ from support import TOP, all_tests, gst_launch, must
 
 SHIPPED = (TOP / 'pipelines' / 'robot' / 'patrol.toml').read_text('utf-8')
 # A person crosses 3.5 m before the robot, which stands; shorter than to wait for the patrol to meet one.
-CROSSES = 'path = "at 4.5 8.5; wait 1"\nwalks = "at 8 7 90; go 8 11 1"\n'
+CROSSES = '[camera.patrol]\npath = "at 4.5 8.5; wait 1"\nwalks = "at 8 7 90; go 8 11 1"\n\n[camera.detection]'
 
 
 def watch(port, one_time, until, seconds):
@@ -69,7 +69,7 @@ def patrols(program, configuration, until, seconds=0):
 
 
 def test_as_it_is_shipped(program):
-    """It looks all around first: the picture changes, the head and three sensors are there, and the plan is in the corner."""
+    """It drives: the picture changes; the head and three sensors are there, and the plan is in the corner."""
     (camera,), seen = patrols(program, SHIPPED, lambda facts: facts.get('pose') and len(facts.get('pir', ())) == 3
                               and facts['pts'] > 2e9)
     assert camera['head'] and camera['bearings'] == '0,-120,120' and (camera['sensor-fov'], camera['sensor-range']) == (120, 12), camera
@@ -78,12 +78,14 @@ def test_as_it_is_shipped(program):
     # 192 x 165 pixels for 16.8 x 14.4 m, 13 from the edges: what is no room is dark, the floor of the lounge is bright.
     rows = gray(picture)
     assert rows[13 + 27][435 + 165] < 60 and rows[13 + 147][435 + 91] > 180, 'there is no floor plan in the picture'
-    changed = sum(a != b for a, b in zip(gray(before)[240], rows[240]))
-    assert changed > 320, f'the camera stands still: {changed} of 640 pixels change'
+    changed = [abs(a - b) for one, other in zip(gray(before)[200:], rows[200:]) for a, b in zip(one, other)]
+    # Noise and JPEG alone: 2.2; driving: 14; measured.
+    assert sum(changed) > 4 * len(changed), f'the camera stands still: {sum(changed) / len(changed)} levels'
 
 
 def test_the_page_shows_whom_it_finds_in_real_time(program):
-    house = SHIPPED.replace('people = 3\n', CROSSES).replace('640', '320').replace('480', '240')
+    house = re.sub(r'\[camera.patrol\].*\[camera.detection\]', CROSSES, SHIPPED, flags=re.S)
+    house = house.replace('640', '320').replace('480', '240')
     _, seen = patrols(program, house, lambda facts: facts.get('objects') and facts['fusion']['action'] == 'track'
                       and any(facts['pir']), 3)
     (first, _, begin), (last, _, end) = seen[0], seen[-1]
