@@ -192,22 +192,15 @@ void BurntIn::forget(double seconds, bool still, bool compared) {
   });
 }
 
-// seconds: since the last search; 0 between searches.
-void BurntIn::publish(double seconds) {
-  const BurntInBoxes before = found_;
+void BurntIn::publish() {
   found_ = {};
-  const int margin = parameters_.margin;
-  for (Place& p : places_) {
-    const double left = std::max(p.left * kWidth - margin, 0), top = std::max(p.top * kHeight - margin, 0);
-    const Box box{left, top, std::min(p.right * kWidth + margin, size_.width) - left,
-                  std::min(p.bottom * kHeight + margin, size_.height) - top};
-    const auto is_same = [&](const Box& b) {
-      return b.x == box.x && b.y == box.y && b.width == box.width && b.height == box.height;
-    };
-    p.unchanged = std::ranges::any_of(before.boxes(), is_same) ? p.unchanged + seconds : 0;
+  for (const Place& p : places_) {
+    // With the other side of the outermost edges.
+    const double left = std::max(p.left * kWidth - kPair, 0), top = std::max(p.top * kHeight - kPair, 0);
+    const Box box{left, top, std::min(p.right * kWidth + kPair, size_.width) - left,
+                  std::min(p.bottom * kHeight + kPair, size_.height) - top};
     const auto overlaps = [&](const Box& other) { return overlap_area(box, other) > 0; };
-    if (p.unchanged >= parameters_.settled && reported_.count < BurntInBoxes::kMost &&
-        std::ranges::none_of(reported_.boxes(), overlaps)) {
+    if (reported_.count < BurntInBoxes::kMost && std::ranges::none_of(reported_.boxes(), overlaps)) {
       reported_.box[reported_.count++] = box;
       found_.is_new.set(found_.count);
     }
@@ -239,10 +232,10 @@ bool BurntIn::update(const BurntInInput& in, MutableGrayView mask) {
     for (Block& b : blocks_) average(b.foreground, b.state == State::active);
     search(in.still);
     forget(since, in.still, compared);
-    publish(since);
+    publish();
   } else if (grows) {
     search(in.still);
-    publish(0);
+    publish();
   }
   clear_boxes(boxes(), mask);
   return found_.count != before;

@@ -35,36 +35,33 @@ class BurntIn {
   struct Parameters {
     // Seconds between two searches. Derived: 25 of them in the 5 s that learning may take.
     double search_period = 0.2;
+    // Seconds without any evidence after which a box is forgotten.
+    double keep = 6;
+    // Seconds of changes before a block counts, and after the last one until which it does. Derived: three of a clock's
+    // seconds, less a frame or two. Guard: people of vtest.avi and intel_one-by-one in bench-burnt_in.
+    double enough = 2.8;
+    // Seconds of rest that follow a change at once, which takes two frames (interlacing, compression). Guard: as above.
+    double rest = 0.4;
+    // Grey levels by which a sampled pixel of a block must change to count, Th at least, and that an edge exceeds. Swept:
+    // at 32 bench-burnt_in learns a sans clock before a bright sky late, at 18 a person whom the head follows is learnt
+    // (unit test). 24 serves.
+    int step = 24;
+    // Grey levels by which either side of a static edge may differ from the reference. Swept: at 12 a box is learnt from an
+    // outdoor sweep where nothing is written (bench-burnt_in), 10 serves.
+    int same = 10;
+    // Analysis pixels by which the scene must have moved against the reference. Derived: more than an edge is wide.
+    double least_shift = 3;
     // A search's share in a block's mean foreground and mean static edges, as its inverse. Derived: a mean over the last
-    // second or so.
+    // seconds, and three searches with static edges before a block counts. Swept: at 14 a blinking logo is learnt after
+    // 5 s (unit test).
     int memory = 12;
-    // Share of searches in which a block is foreground, or has static edges, to count as such. Swept: at .3 a column of a
-    // blinking logo is left over (unit test). Guard: bench-burnt_in.
+    // Share of searches in which a block is foreground, or has static edges, to count as such. Swept: at .3 a blinking logo
+    // is left over (unit test). Guard: bench-burnt_in.
     double often = 0.2;
     // Blocks that may lie between two parts of a component: digits, or the arms and the head of a person.
     int gap = 2;
     // Share of the picture's height that writing has at most. Derived: three lines, or a large logo.
     double highest = 0.2;
-    // Analysis pixels that are left out around the blocks. Derived: the width of the blur.
-    int margin = 2;
-    // Seconds without any evidence after which a box is forgotten.
-    double keep = 6;
-    // Seconds without growth after which a box is reported. Derived: five searches.
-    double settled = 1;
-    // Grey levels by which a sampled pixel of a block must change to count, and that an edge exceeds over two pixels.
-    // Tried: at 48 bench-burnt_in no longer learns the sans clock of a standing camera; with Th alone a person swaying in
-    // time is learnt (unit test places with learning: 9 wrong regions, at 32 still 1).
-    int step = 24;
-    // Grey levels by which either side of a static edge may differ from the reference. Swept: at 15 a person followed by
-    // the head is learnt (unit test), 10 and 12 serve. Guard: bench-burnt_in.
-    int same = 10;
-    // Analysis pixels by which the scene must have moved against the reference. Derived: more than an edge is wide.
-    double least_shift = 3;
-    // Seconds of changes before a block counts, and after the last one until which it does. Derived: three of a clock's
-    // seconds, less a frame or two. Guard: people of vtest.avi and intel_one-by-one in bench-burnt_in.
-    double enough = 2.8;
-    // Seconds of rest that follow a change at once, which takes two frames (interlacing, compression).
-    double rest = 0.4;
   };
 
   BurntIn() = default;
@@ -96,8 +93,8 @@ class BurntIn {
 
   struct Place {  // in blocks, ends exclusive
     int left, top, right, bottom;
-    double quiet = 0, unchanged = 0;  // seconds
-    bool changes = false;             // learnt, or seen, from changes of a standing camera's picture
+    double quiet = 0;      // seconds without evidence
+    bool changes = false;  // learnt, or seen, from changes of a standing camera's picture
     bool grown_by(const Place& other, int gap) const {
       return other.left <= right + gap && other.right >= left - gap && other.top <= bottom &&
              other.bottom >= top;
@@ -117,7 +114,7 @@ class BurntIn {
   Place take_component(int x, int y, int& evident, int& active);
   void add(const Place& component, bool evident, bool still);
   void forget(double seconds, bool still, bool compared);
-  void publish(double seconds);
+  void publish();
 
   Parameters parameters_;
   Size size_;
