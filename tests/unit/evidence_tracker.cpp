@@ -347,8 +347,8 @@ START_TEST(before_a_moving_camera_looks_go_before_a_motion_track_that_does_not_f
   const struct {
     double left, top, width, height;  // of the motion track: shares of the body
     bool encloses, fits;
-  } cases[] = {{0, .55, 1, .45, true, false}, {0, .7, 1, .3, false, false}, {.3, .6, .4, .4, false, false},
-               {.5, 0, 1, 1, true, false},    {.5, 0, 1, 1, false, true},   {0, .3, 1, .7, false, true}};
+  } cases[] = {{0, .55, 1, .45, true, false}, {0, .55, 1, .45, false, false}, {.3, .6, .4, .4, false, false},
+               {.5, 0, 1, 1, true, false},    {.5, 0, 1, 1, false, true},     {0, .3, 1, .7, false, true}};
   for (const auto& each : cases) {
     Scene scene;
     scene.encloses = each.encloses;

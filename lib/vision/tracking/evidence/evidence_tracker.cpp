@@ -135,7 +135,7 @@ void EvidenceTracker::pair_by_overlap(const Overlap& overlap_of, const Use& use)
 // that moves.
 bool EvidenceTracker::is_piece(const EvidenceTrack& t, const Box& body) const {
   return !looks_enclose_ && t.mirrors && camera_stood_ < p_.still_time &&
-         share_within(t.looked(), body) >= p_.body.nested && t.looked().area() < p_.adopt * body.area();
+         share_within(t.looked(), body) >= p_.body.nested && t.looked().area() < p_.leave * body.area();
 }
 
 void EvidenceTracker::match_look(bool sure) {
@@ -237,19 +237,20 @@ void EvidenceTracker::match_motion(std::span<const Track> motion) {
   const auto overlap_of = [&](std::size_t i, std::size_t j) {
     return intersection_over_union(tracks_[i].box(), reduced(motion[j].box));
   };
+  const bool stands = !looks_enclose_ && camera_stood_ >= p_.still_time;
   pair_by_overlap(overlap_of, [&](std::size_t i, std::size_t j, double overlap) {
     EvidenceTrack& t = tracks_[i];
     t.motion_id = motion[j].id;
     t.evidence = p_.ceiling;
     t.since_motion = t.unseen = 0;
     used_[j] = 1;
-    if (overlap >= (looks_enclose_ ? p_.adopt_enclosing : p_.adopt)) mirror(t, motion[j]);
+    if (overlap >= (stands ? p_.leave : p_.adopt)) mirror(t, motion[j]);
   });
 }
 
 void EvidenceTracker::begin_mirror(const Track& motion) {
   const Box box = reduced(motion.box);
-  const auto covers = [&](const EvidenceTrack& t) { return is_one_body(box, t.box(), {.nested = p_.apart}); };
+  const auto covers = [&](const EvidenceTrack& t) { return is_one_body(box, t.box(), {.nested = p_.gate}); };
   if (std::ranges::any_of(tracks_, covers)) return;
   EvidenceTrack t = EvidenceTrack::begin(box);
   t.evidence = p_.publish;
@@ -304,7 +305,7 @@ void EvidenceTracker::judge_look(const EvidenceLook& look) {
       const bool moves = t.since_motion <= look.seconds;
       if (!moves && t.looked().area() > 0) t.evidence -= p_.against;
       if (should_be_seen(t)) t.add_person(-p_.missed_person, p_);
-      t.quality += p_.quality_gain * ((moves ? p_.motion_quality : 0.0) - t.quality);
+      t.quality += p_.quality_gain * ((moves ? 1.0 : 0.0) - t.quality);
     }
     if (t.mirrors) {
       t.person = t.person && t.person_evidence > 0;
