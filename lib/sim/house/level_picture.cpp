@@ -65,9 +65,9 @@ const LevelPicture::Plane& LevelPicture::plane(double up) {
     const double rise = size_.middle_y - (row + .5);
     const double depth = over * rise > 0 ? over * size_.focal / rise : kEndless;
     made.depth[row] = float(depth);
-    // The pixel is depth / focal wide and longer by depth / |over|.
-    made.level[row] = std::uint8_t(
-        Texture::level_of(depth / size_.focal * std::sqrt(std::max(1., depth / std::abs(over)))));
+    // The pixel is depth / focal wide and longer by depth / |over|. At the mean of both, boards across the view flicker.
+    const double longer = std::max(1., depth / std::abs(over));
+    made.level[row] = std::uint8_t(Texture::level_of(depth / size_.focal * longer));
   }
   planes_.push_back(std::move(made));
   return planes_.back();
