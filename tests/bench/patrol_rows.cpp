@@ -54,8 +54,17 @@ std::string crossing(Random& random, const PatrolRow& row, double away, double s
               x + ahead, 7 + side * std::min(across - aside, 6.2), row.speed);
 }
 
-std::string walks(const PatrolRow& row, Random& random) {
-  const double side = random() % 2 ? 1 : -1, shift = between(random, -.4, .4);
+// Into the picture from one side, 8 m away, then straight towards the robot; beside that way by so many metres.
+std::string approach(Random& random, double side, double beside, double speed) {
+  const double x = 10.5 + between(random, -.4, .4), late = between(random, .2, 1);
+  return text("at %.2f %.2f %.0f; wait %.2f; go %.2f %.2f %.2f; go %.2f %.2f %.2f", x + side * beside,
+              7 - side * 5.3 + beside, 90 * side, late, x + side * beside, 7 - side * 4 + beside, speed,
+              4.2 + side * beside, 7 - side * .8 + beside, speed);
+}
+
+// side: from which a person comes, 1: from the left.
+std::string walks(const PatrolRow& row, Random& random, double side) {
+  const double shift = between(random, -.4, .4);
   const double late = between(random, .2, 1);
   switch (row.way) {
     case Way::nobody:
@@ -63,32 +72,32 @@ std::string walks(const PatrolRow& row, Random& random) {
     case Way::crosses:
       return crossing(random, row, 7.5, side);
     case Way::approaches:
-      return text("at %.2f %.2f 180; wait %.2f; go 4.5 7 %.2f", 12.5 + shift, 7 + side * shift, late,
-                  row.speed);
-    case Way::along_hall:
-      return text("at %.2f 15.3 180; wait %.2f; go 3.5 15.3 %.2f", 11.5 + shift, late, row.speed);
-    case Way::walks_ahead:
-      return text("at 4.5 %.2f; go 23 15.3 %.2f", 15.3 + shift / 2, between(random, .5, .7));
+      return approach(random, side, 0, row.speed);
+    case Way::along_hall:  // out of the doorway
+      return text("at %.2f 12.5 90; wait %.2f; go 9 15.3 %.2f; go 3.5 15.3 %.2f", 9 + shift / 2, late,
+                  row.speed, row.speed);
+    case Way::walks_ahead: {
+      const double speed = between(random, .5, .7);
+      return text("at %.2f 12.5 90; wait %.2f; go 9 15.3 1; go 23 15.3 %.2f", 9 + shift / 2, late, speed);
+    }
     case Way::through_door:
       return text("at %.2f 15.3; wait %.2f; go 9 15 %.2f; go 9 12 %.2f; go %.2f 11 %.2f", 9 + side * 4, late,
                   row.speed, row.speed, 9 + side * 3, row.speed);
     case Way::side_by_side: {
-      const auto one = [&](double y) {
-        return text("at %.2f %.2f 180; wait %.2f; go 4.5 %.2f %.2f", 12.5 + shift, y, late, y, row.speed);
-      };
-      return one(6.45) + " | " + one(7.55);
+      Random same = random;
+      return approach(random, side, -.55, row.speed) + " | " + approach(same, side, .55, row.speed);
     }
     case Way::three_cross:
       return crossing(random, row, 6.3, side) + " | " + crossing(random, row, 7.7, -side) + " | " +
              crossing(random, row, 9.1, side);
     case Way::from_behind:
-      return text("at %.2f %.2f 180; wait %.2f; go .8 %.2f %.2f", 5.5 + shift, 7 + side * 4,
-                  between(random, 1, 3), 7 + side * 4, row.speed);
+      return text("at %.2f %.2f 180; wait %.2f; go .8 %.2f %.2f", 8.5 + shift, 7 + side * 4,
+                  between(random, 4, 6), 7 + side * 4, row.speed);
   }
   return {};
 }
 
-std::string path(const PatrolRow& row) {
+std::string path(const PatrolRow& row, double side) {
   const bool in_hall = row.way == Way::walks_ahead || row.way == Way::along_hall;
   switch (row.robot) {
     case Robot::stands:
@@ -96,11 +105,16 @@ std::string path(const PatrolRow& row) {
              : in_hall                    ? "at 1.5 15.3; wait 1"
                                           : "at 2.5 7; wait 1";
     case Robot::drives:
-      return in_hall ? "at 1.5 15.3; go 22 15.3" : "at 2.5 7; go 13 7";
+      return in_hall ? "at 4 15.3; go 22 15.3" : "at 2.5 7; go 13 7";
     case Robot::turns:
-      return "at 2.5 7 -45; turn 90; turn -90";
-    case Robot::drives_and_turns:  // legs of 1.8 m, 30 degrees to the right and to the left
-      return "at 2.5 7 -30; go 4.06 6.1; go 5.62 7; go 7.18 6.1; go 8.74 7; go 10.3 6.1";
+      // At first away from where the person comes.
+      return text("at 2.5 7 %.0f; turn %.0f; turn %.0f", 45 * side, -90 * side, 90 * side);
+    case Robot::drives_and_turns: {  // legs of 1.8 m, 30 degrees to the right and to the left
+      std::string legs = text("at 2.5 7 %.0f", 30 * side);
+      for (int i = 1; i <= 5; ++i)
+        legs += text("; go %.2f %.2f", 2.5 + 1.56 * i, i % 2 == 1 ? 7 + .9 * side : 7);
+      return legs;
+    }
   }
   return {};
 }
@@ -113,8 +127,9 @@ std::span<const PatrolRow> patrol_rows() {
 
 std::string scene(const PatrolRow& row, unsigned seed) {
   Random random(seed * 7919);
-  const std::string who = walks(row, random);
-  return "seed=" + std::to_string(seed) + " path=\"" + path(row) + "\" " +
+  const double side = random() % 2 ? 1 : -1;
+  const std::string who = walks(row, random, side);
+  return "seed=" + std::to_string(seed) + " path=\"" + path(row, side) + "\" " +
          (who.empty() ? "people=0" : "walks=\"" + who + "\"");
 }
 

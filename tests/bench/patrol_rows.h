@@ -12,9 +12,9 @@ enum class Robot { stands, drives, turns, drives_and_turns };
 enum class Way {
   nobody,
   crosses,       // 5 m before the robot, from out of the picture on one side
-  approaches,    // from 10 m to 2 m
-  along_hall,    // the same in the corridor
-  walks_ahead,   // of the robot, along the corridor at .5 to .7 m/s, 3 m before it at the start
+  approaches,    // from 8 m to 2 m, after a step into the picture
+  along_hall,    // the same in the corridor, out of the doorway
+  walks_ahead,   // of the robot, along the corridor at .5 to .7 m/s, after a step out of the doorway
   through_door,  // from the corridor into the room
   side_by_side,  // two approach
   three_cross,   // at different distances, not all in the same direction
