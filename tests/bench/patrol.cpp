@@ -8,7 +8,7 @@
 //   bench-patrol --twins [--seeds 20]              how the house compares with real video (patrol_twins.h)
 //   bench-patrol --short                           a few rows, three seeds, judged by what they reach today
 //
-// Figures (patrol_score.h): median of the seeds and the worst. Widths of pictures and of analysis: 320.
+// Takes 10 minutes of processor time. Figures (patrol_score.h): median of the seeds and the worst. Widths of pictures and of analysis: 320.
 #include <cerberus/cerberus.h>
 #include <gst/gst.h>
 
@@ -94,7 +94,7 @@ std::vector<Subject> subjects_of(const CerberusTruth& truth) {
 std::string line_of(const PatrolRow& row, unsigned seed, const Witnesses& witnesses,
                     const std::string& head) {
   const std::string named = " head=" + head + " ";
-  return "patrolsimsrc name=robot plan=" CERBERUS_PATROL_PLAN " num-buffers=" +
+  return "patrolsimsrc name=robot plan=\"" CERBERUS_PATROL_PLAN "\" num-buffers=" +
          std::to_string(kSeconds * kRate) + named + scene(row, seed) +
          " ! video/x-raw,width=320,height=240 ! " + witnesses.elements +
          " ! pirfusion name=fusion horizontal-fov=60" + named +

@@ -17,15 +17,15 @@ namespace {
 const Twin kTwins[] = {
     {"a near person before a shaking camera",
      {"otb_BlurBody_a"},
-     "patrolsimsrc plan=" CERBERUS_PATROL_PLAN " num-buffers=167 camera-height=1.5 start-tilt=-6 shake=3 "
+     "patrolsimsrc plan=\"" CERBERUS_PATROL_PLAN "\" num-buffers=167 camera-height=1.5 start-tilt=-6 shake=3 "
      "shake-kind=hand exposure=30000000 yaw-rate=60 "
      "path=\"at 21 10.5; turn 12; turn -24; turn 12\" walks=\"at 24.4 10 180; go 24 11 .8; wait .8; go 24.8 "
      "10 "
      ".8\" ! video/x-raw,width=320,height=240,framerate=25/1"},
     {"a room gone round without anybody",
      {"nogt_kitchen_a", "nogt_kitchen_b"},
-     "patrolsimsrc plan=" CERBERUS_PATROL_PLAN
-     " num-buffers=540 people=0 camera-height=1.45 start-tilt=-18 start-pan=50 shake=.5 shake-kind=hand "
+     "patrolsimsrc plan=\"" CERBERUS_PATROL_PLAN
+     "\" num-buffers=540 people=0 camera-height=1.45 start-tilt=-18 start-pan=50 shake=.5 shake-kind=hand "
      "yaw-rate=20 speed=.35 path=\"at 21.1 5.9 -90; go 21.1 3.4; go 23.4 3.4; go 23.9 5.6\" ! "
      "video/x-raw,width=320,height=240"}};
 
