@@ -8,7 +8,7 @@
 //   bench-patrol --twins [--seeds 20]              how the house compares with real video (patrol_twins.h)
 //   bench-patrol --short                           a few rows, three seeds, judged by what they reach today
 //
-// Takes 10 minutes of processor time. Figures (patrol_score.h): median of the seeds and the worst. Widths of pictures and of analysis: 320.
+// Takes 10 minutes of processor time. Figures (patrol_score.h): median of the seeds and the worst; pictures of 320x240.
 #include <cerberus/cerberus.h>
 #include <gst/gst.h>
 
