@@ -9,10 +9,11 @@
 namespace cerberus::sim {
 namespace {
 
-constexpr int kFewest = 2, kMost = 6;
+constexpr int kFewest = 4, kMost = 6;
 constexpr double kPart = 1.5;  // pixels of turning
-// Where the parts of an exposure are sampled within a pixel, so that edges are smooth.
-constexpr double kShifts[kMost][2] = {{-.25, .1}, {.25, -.1}, {-.1, -.3}, {.1, .3}, {-.35, -.2}, {.35, .2}};
+// Where the rays of an exposure's parts go through a pixel, from its middle: else edges would move by whole pixels.
+constexpr double kShifts[kMost][2] = {{-.125, -.375}, {.375, -.125}, {.125, .375},
+                                      {-.375, .125},  {.25, -.25},   {-.25, .25}};
 constexpr int kNoises = 1 << 15;
 // U and V by tint: surfaces, then skin, hair, shirt, trousers, shoes.
 constexpr std::uint8_t kTint[LevelPicture::kTints][2] = {
@@ -69,9 +70,11 @@ LevelSize HouseCamera::level_size(const Turned& turned) const {
 
 void HouseCamera::expose(const Pose& pose, std::span<const Subject> people) {
   const Turned turned{std::cos(pose.roll), std::sin(pose.roll), std::cos(pose.pitch), std::sin(pose.pitch)};
-  const LevelSize size = level_size(turned);
-  if (const LevelSize& now = level_.size();
-      size.width != now.width || size.height != now.height || size.middle_y != now.middle_y)
+  LevelSize size = level_size(turned);
+  const double* shift = kShifts[exposed_ % kMost];
+  size.middle_x -= shift[0], size.middle_y -= shift[1];
+  if (const LevelSize& now = level_.size(); size.width != now.width || size.height != now.height ||
+                                            size.middle_x != now.middle_x || size.middle_y != now.middle_y)
     level_.resize(size);
   level_.draw_rooms(plan_, light_, {pose.x, pose.y, pose.height, pose.yaw});
   drawn_.resize(people.size());
@@ -86,22 +89,21 @@ void HouseCamera::expose(const Pose& pose, std::span<const Subject> people) {
     drawn_[i] = {body_of(*person.stance, person.height), *person.clothes, person.stance->x, person.stance->y};
     level_.draw(drawn_[i], plan_, light_);
   }
-  const double* shift = kShifts[exposed_ % kMost];
-  add_up(turned, shift[0], shift[1]);
+  add_up(turned, size.middle_x + shift[0], size.middle_y + shift[1]);
   ++exposed_;
   turned_ = turned, pose_ = pose;
   stances_.clear();
   for (const Subject& person : people) stances_.push_back(*person.stance);
 }
 
-void HouseCamera::add_up(const Turned& turned, double shift_x, double shift_y) {
+void HouseCamera::add_up(const Turned& turned, double middle_x, double middle_y) {
   const LevelSize& size = level_.size();
   const int high = size.height;
   const std::uint8_t *luma = level_.luma(0), *tint = level_.tint(0);
   const bool level = turned.sin_roll == 0 && turned.sin_pitch == 0;
   for (int row = 0; row < lens_.height; ++row)
     for (int column = 0; column < lens_.width; ++column) {
-      const double x = column + .5 + shift_x - lens_.width / 2., y = row + .5 + shift_y - lens_.height / 2.;
+      const double x = column + .5 - lens_.width / 2., y = row + .5 - lens_.height / 2.;
       double u = x, v = y;
       if (!level) {
         const double down = x * turned.sin_roll + y * turned.cos_roll;
@@ -109,7 +111,7 @@ void HouseCamera::add_up(const Turned& turned, double shift_x, double shift_y) {
         u = (x * turned.cos_roll - y * turned.sin_roll) * scale;
         v = (down * turned.cos_pitch - focal_ * turned.sin_pitch) * scale;
       }
-      u += size.middle_x - .5, v += size.middle_y - .5;
+      u += middle_x - .5, v += middle_y - .5;
       const int i = std::clamp(int(u), 0, size.width - 2), j = std::clamp(int(v), 0, high - 2);
       const int a = std::clamp(int((u - i) * 16), 0, 16), b = std::clamp(int((v - j) * 16), 0, 16);
       const std::uint8_t* p = luma + std::size_t(i) * high + j;

@@ -59,7 +59,7 @@ class HouseCamera {
     double cos_roll, sin_roll, cos_pitch, sin_pitch;
   };
   LevelSize level_size(const Turned& turned) const;
-  void add_up(const Turned& turned, double shift_x, double shift_y);
+  void add_up(const Turned& turned, double middle_x, double middle_y);
   struct Place {
     double x, y;
   };
