@@ -15,7 +15,9 @@ constexpr struct Parameters {
   // Share of the scene's corners from which on every track is believed. swept: .85 to .95; with .85 MOTA .488, with .95 a
   // recall of .334.
   double calm = 0.9;
-  // Times the difference around. swept: 1.4 to 1.8; with 1.4 5 identities, with 1.8 a recall of .347.
+  // Times the difference around, from which on a track is believed. swept: 1.4 to 1.8; with 1.4 5 identities, with 1.8 a recall of
+  // .347. That it stays so while there is more inside gives 1 of IDF1, 2 of the recall and no identity more with nobody, and
+  // takes 2 of MOTA; a head that follows somebody from a turning robot has him in the picture all the time instead of .79 (bench-patrol).
   double contrast = 1.6;
   // Grey levels that are added to both: where little is left over anywhere, noise decides. swept: 1 to 4; with 1 4.7
   // identities, with 4 an IDF1 of .656.
@@ -79,7 +81,8 @@ bool OwnMotionEvidence::supports(std::uint32_t id, const Box& box, bool seen) {
   e.present = true;
   if (seen)
     e.contrast += std::min(1.0, step_ / kParameters.memory) * (contrast_of(difference_, box) - e.contrast);
-  return calm_ || e.contrast > std::log(kParameters.contrast);
+  e.believed = calm_ || e.contrast > std::log(kParameters.contrast) || (e.believed && e.contrast > 0);
+  return e.believed;
 }
 
 }  // namespace cerberus::vision

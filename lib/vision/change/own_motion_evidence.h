@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Whether a track that only motion supports moves by itself. Where the camera's motion does not explain the scene (see
-// SceneCalm), parallax and blur leave edges over everywhere; a track is then believed while more is left over inside its box
-// than around it.
+// SceneCalm), parallax and blur leave edges over everywhere; a track is then believed once much more is left over inside its
+// box than around it, or once the scene has been calm, and as long as it is more.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,8 @@ class OwnMotionEvidence {
  private:
   struct Evidence {
     std::uint32_t id;
-    bool present;         // in this frame
+    bool present;  // in this frame
+    bool believed = false;
     double contrast = 0;  // running mean: logarithm of the mean difference inside to that around
   };
   Evidence& of(std::uint32_t id);
