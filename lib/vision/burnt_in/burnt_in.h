@@ -2,11 +2,12 @@
 // Finds what a camera writes into its own pictures (a clock, a name, a logo), which would be foreground for ever: it
 // keeps its place in the frame while the scene moves, or it changes again and again without leaving its own outline.
 //
-// Own method. Blocks of 8 x 4 analysis pixels in frame coordinates collect evidence: edges that stay while the camera
-// turns, changes at once with rest between them while it stands, or in every frame. Blocks with evidence and all that
-// moves beside them are one component: a person who waves, or whom the head follows, is taller than writing, or mostly
-// without evidence. The box of a component is learnt, grows along its row by what changes at once (the next digit), and
-// is forgotten seconds after the last evidence.
+// Own method. Blocks of 8 x 4 analysis pixels in frame coordinates collect evidence of two kinds: static edges while the
+// camera turns (static_edges.h), recurrent changes while it stands (recurrent_changes.h). Blocks with enough evidence
+// are joined to boxes. A target followed by the head keeps its place, too, and a person changes the picture in place,
+// but neither all of the person: above and below there is foreground or change. Around writing there is none.
+// A box grows along its row by what changes at once (the next digit). It is forgotten when the evidence stops: its row
+// moves along with the scene, or has not changed for long.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +15,10 @@
 #include <span>
 #include <vector>
 
+#include "vision/burnt_in/block_grid.h"
 #include "vision/burnt_in/burnt_in_boxes.h"
+#include "vision/burnt_in/recurrent_changes.h"
+#include "vision/burnt_in/static_edges.h"
 #include "vision/geometry/box.h"
 #include "vision/geometry/transform.h"
 #include "vision/image/image.h"
@@ -33,39 +37,37 @@ struct BurntInInput {
 class BurntIn {
  public:
   struct Parameters {
+    RecurrentChanges::Parameters changes;
+    StaticEdges::Parameters edges;
     // Seconds between two searches. Derived: 25 of them in the 5 s that learning may take.
     double search_period = 0.2;
-    // Seconds without any evidence after which a box is forgotten.
-    double keep = 6;
-    // Seconds of changes before a block counts, and after the last one until which it does. Derived: three of a clock's
-    // seconds, less a frame or two. Guard: people of vtest.avi and intel_one-by-one in bench-burnt_in.
-    double enough = 2.8;
-    // Seconds of rest that follow a change at once, which takes two frames (interlacing, compression). Guard: as above.
-    double rest = 0.4;
-    // Grey levels by which a sampled pixel of a block must change to count, Th at least, and that an edge exceeds. Swept:
-    // at 32 bench-burnt_in learns a sans clock before a bright sky late, at 18 a person whom the head follows is learnt
-    // (unit test). 24 serves.
-    int step = 24;
-    // Grey levels by which either side of a static edge may differ from the reference. Swept: at 12 a box is learnt from an
-    // outdoor sweep where nothing is written (bench-burnt_in), 10 serves.
-    int same = 10;
-    // Analysis pixels by which the scene must have moved against the reference. Derived: more than an edge is wide.
-    double least_shift = 3;
-    // A search's share in a block's mean foreground and mean static edges, as its inverse. Derived: a mean over the last
-    // seconds, and three searches with static edges before a block counts. Swept: at 14 a blinking logo is learnt after
-    // 5 s (unit test).
-    int memory = 12;
-    // Share of searches in which a block is foreground, or has static edges, to count as such. Swept: at .3 a blinking logo
-    // is left over (unit test). Guard: bench-burnt_in.
+    // A search's share in a block's mean foreground, as its inverse. Derived: a mean over the last second or so.
+    int foreground_memory = 6;
+    // Share of searches in which a block is foreground to count as such, and share of a row or column of such blocks by
+    // which a box of static edges grows. Swept: at .3 a column of a blinking logo is left over (unit test). Guard:
+    // bench-burnt_in.
     double often = 0.2;
-    // Blocks that may lie between two parts of a component: digits, or the arms and the head of a person.
-    int gap = 2;
-    // Share of the picture's height that writing has at most. Derived: three lines, or a large logo.
-    double highest = 0.2;
+    // Blocks that may lie between two digits, and as far as which a box's surroundings are judged.
+    int gap = 2, far = 3;
+    // Share of the surroundings that may be foreground, or change with the box. Chosen, not swept. Guard: people of
+    // vtest.avi and intel_one-by-one in bench-burnt_in.
+    double around = 0.1;
+    // Share of a box's blocks that must have changed at once. Derived: a digit changes as a whole, a person's parts one
+    // after the other.
+    double together = 0.6;
+    // Share of the picture's width and height that writing has at most. Derived: three lines, or a large logo.
+    double widest = 0.6, highest = 0.2;
+    // Analysis pixels that are left out around the blocks. Derived: the width of the blur.
+    int margin = 2;
+    // Seconds without any evidence, and of contrary evidence, after which a box is forgotten.
+    double keep = 30, keep_against = 3;
+    // Seconds without growth after which a box is reported. Derived: five searches.
+    double settled = 1;
   };
 
   BurntIn() = default;
-  explicit BurntIn(const Parameters& parameters) : parameters_(parameters) {}
+  explicit BurntIn(const Parameters& parameters)
+      : parameters_(parameters), changes_(parameters.changes), edges_(parameters.edges) {}
 
   // Forgets all but which boxes were new.
   void reset();
@@ -78,55 +80,36 @@ class BurntIn {
   std::size_t bytes() const;
 
  private:
-  using Time = std::uint32_t;  // milliseconds, modulo 2^32 (50 days)
-
-  enum class State : std::uint8_t { quiet, active, evident };
-
-  struct Block {
-    Time first = 0, burst = 0,
-         last = 0;  // change: of those that are evidence, of the present burst, and of all
-    std::uint8_t fixed = 0, foreground = 0;  // share of searches, 1/255
-    // Scratch of a search: edges that have stayed, less those that have not; what the block is.
-    std::int8_t votes = 0;
-    State state = State::quiet;
-  };
-
   struct Place {  // in blocks, ends exclusive
     int left, top, right, bottom;
-    double quiet = 0;      // seconds without evidence
+    double quiet = 0, against = 0, unchanged = 0;  // seconds
     bool changes = false;  // learnt, or seen, from changes of a standing camera's picture
-    bool grown_by(const Place& other, int gap) const {
-      return other.left <= right + gap && other.right >= left - gap && other.top <= bottom &&
-             other.bottom >= top;
-    }
   };
 
-  Block& at(int x, int y) { return blocks_[static_cast<std::size_t>(y) * columns_ + x]; }
   void prepare(Size size);
-  template <typename Each>
-  void for_blocks(const Place& place, Each each);
-  template <typename Found>
-  void find_pixels(const std::uint8_t* row, int width, int y, int limit, Found found);
-  void note_change(Block& block);
-  void average(std::uint8_t& share, bool is) const;
-  bool compare_edges(GrayView picture);
+  void look_for(const BurntInInput& input, GrayView mask, double seconds);
+  void average_foreground(GrayView mask);
+  void grow_rows();
+  bool is_active(const Place& place) const;
+  void grow_row(Place& place, int step);
   void search(bool still);
-  Place take_component(int x, int y, int& evident, int& active);
-  void add(const Place& component, bool evident, bool still);
+  Place take_component(int x, int y);
+  void grow_foreground(Place& place) const;
+  bool is_quiet_around(const Place& place, bool still) const;
+  bool changes_together(const Place& place) const;
+  bool is_too_large(const Place& place) const;
+  void add(const Place& place);
   void forget(double seconds, bool still, bool compared);
-  void publish();
+  void publish(double seconds);
 
   Parameters parameters_;
-  Size size_;
-  int columns_ = 0, rows_ = 0;
-  std::vector<Block> blocks_;
-  std::vector<std::uint64_t> bits_;  // scratch, a sampled row
-  std::vector<std::uint8_t> edges_;  // scratch, a sampled row
-  Image<std::uint8_t> reference_;    // the sampled rows of a picture before
-  Transform from_reference_;
-  bool referenced_ = false;
-  Time now_ = 0, searched_ = 0;
-  double period_ = 0;  // seconds
+  BlockGrid grid_;
+  RecurrentChanges changes_;
+  StaticEdges edges_;
+  std::vector<std::uint8_t> foreground_;  // of a block: share of searches, 1/255
+  std::vector<std::uint8_t> candidate_;   // scratch of the search, of a block
+  std::vector<std::uint64_t> bits_;       // scratch, two sampled rows
+  double now_ = 0, searched_ = 0, period_ = 0;
   std::vector<Place> places_;
   BurntInBoxes found_, reported_;
 };

@@ -18,7 +18,7 @@ struct BurntInBoxes {
   static constexpr std::size_t kMost = 8;
   std::array<Box, kMost> box;
   std::size_t count = 0;
-  std::bitset<kMost> is_new;  // found, and not overlapping one that was new before
+  std::bitset<kMost> is_new;  // found, grown to its size, and not overlapping one that was new before
 
   std::span<const Box> boxes() const { return {box.data(), count}; }
 };
