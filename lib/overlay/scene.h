@@ -19,6 +19,7 @@ struct Object {
   double x = 0, y = 0, width = 0, height = 0;
   double speed = 0;     // pixels a second; not finite: unknown
   double distance = 0;  // metres; not finite: unknown
+  double bearing = 0;   // radians, from the camera's axis; not finite: unknown
   ObjectState state = ObjectState::seen;
   bool target = false;  // the head follows it
 };

@@ -315,6 +315,7 @@ void read_objects(State& state, GstBuffer* buffer) {
     object.width = region.width, object.height = region.height;
     object.speed = region.tracked ? std::hypot(region.vx, region.vy) : NAN;
     object.distance = region.distance;
+    object.bearing = cerberus::sensing::radians(region.bearing);
     object.state = region.state == CERBERUS_REGION_STOPPED   ? overlay::ObjectState::stopped
                    : region.state == CERBERUS_REGION_COASTED ? overlay::ObjectState::coasted
                                                              : overlay::ObjectState::seen;
@@ -388,8 +389,6 @@ overlay::System read_system(GstBuffer* buffer, GstClockTime time) {
   return system;
 }
 
-// What a radar shows. An object whose bearing and distance are not known is where it is in the picture, and the lower its
-// feet the nearer, as on the robot's page.
 overlay::Radar read_radar(const State& state, GstBuffer* buffer, GstClockTime time, double fov) {
   using cerberus::sensing::radians;
   overlay::Radar radar;
@@ -403,19 +402,10 @@ overlay::Radar read_radar(const State& state, GstBuffer* buffer, GstClockTime ti
                                  fusion->sensors[i], (fusion->doubtful >> i & 1) != 0});
     overlay::divide_round(radar.sensors);
   }
-  const double width = GST_VIDEO_INFO_WIDTH(&state.info), height = GST_VIDEO_INFO_HEIGHT(&state.info);
-  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
-  for (guint i = 0; i < regions->len; ++i) {
-    const auto& region = *static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
-    const double aside =
-        std::isfinite(region.bearing)
-            ? radians(region.bearing)
-            : std::atan(((region.x + region.width / 2) / width - .5) * 2 * std::tan(radar.field_of_view / 2));
-    const double feet = std::clamp((region.y + region.height) / height, 0., 1.);
-    const double away =
-        std::isfinite(region.distance) ? region.distance : (.95 - .65 * feet) * overlay::kRadarReach;
-    radar.objects.push_back({state.objects[i].id, radar.pan + aside, away, state.objects[i].target});
-  }
+  const cerberus::vision::Lens lens(radar.field_of_view,
+                                    {GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)});
+  for (const overlay::Object& object : state.objects)
+    radar.objects.push_back(overlay::radar_object(object, radar.pan, lens));
   return radar;
 }
 

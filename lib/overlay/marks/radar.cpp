@@ -73,6 +73,14 @@ void divide_round(std::span<RadarSensor> sensors) {
   }
 }
 
+RadarObject radar_object(const Object& object, double pan, const vision::Lens& lens) {
+  const vision::Point middle{object.x + object.width / 2, lens.frame().height / 2.};
+  const double feet = std::clamp((object.y + object.height) / lens.frame().height, 0., 1.);
+  return {object.id,
+          std::isfinite(object.bearing) ? pan + object.bearing : lens.direction(middle, pan, 0).bearing,
+          std::isfinite(object.distance) ? object.distance : (.95 - .65 * feet) * kRadarReach, object.target};
+}
+
 Patch draw_radar(const Radar& radar, Area frame, PicturePool& pool) {
   const double side = std::min(frame.width, frame.height), radius = kRadius * side;
   if (radius < kLeast) return {};

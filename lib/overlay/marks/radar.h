@@ -8,6 +8,7 @@
 
 #include "overlay/picture.h"
 #include "overlay/scene.h"
+#include "vision/geometry/lens.h"
 
 namespace cerberus::overlay {
 
@@ -16,6 +17,10 @@ inline constexpr double kRadarReach = 12;
 
 // Sets the bearings' sectors: halfway to the neighbours on both sides, at most 60 degrees, half of what PIR modules see.
 void divide_round(std::span<RadarSensor> sensors);
+
+// Where an object of the picture is, the camera's pan (radians) away from straight ahead. What is not known of it follows
+// from the picture: the bearing from its middle, and the lower its feet the nearer it is.
+RadarObject radar_object(const Object& object, double pan, const vision::Lens& lens);
 
 // Returns a patch without pixels where the frame has no room for it.
 Patch draw_radar(const Radar& radar, Area frame, PicturePool& pool);
