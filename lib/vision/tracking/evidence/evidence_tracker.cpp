@@ -111,7 +111,7 @@ bool EvidenceTracker::inside_moves(const Box& box, bool calm) const {
 }
 
 // Pairs the tracks rows_ with the boxes columns_ so that the overlaps are largest in all; each pair reaches the gate.
-// row, column: boxes of their elements. use: called with a row's element, a column's and their overlap.
+// overlap_of: of a row's element and a column's. use: called with these two and their overlap.
 template <typename Overlap, typename Use>
 void EvidenceTracker::pair_by_overlap(const Overlap& overlap_of, const Use& use) {
   if (rows_.empty() || columns_.empty()) return;
@@ -131,10 +131,10 @@ void EvidenceTracker::pair_by_overlap(const Overlap& overlap_of, const Use& use)
   }
 }
 
-// Whether the motion track whose place it has shows a part of the body only, as parallax leaves of who walks ahead of a camera
-// that moves.
+// Whether the track has the place of a motion track that shows a small part of this body only, as parallax leaves of a person
+// ahead of a camera that moves.
 bool EvidenceTracker::is_piece(const EvidenceTrack& t, const Box& body) const {
-  return !looks_enclose_ && t.mirrors && camera_stood_ < p_.still_time &&
+  return !looks_enclose_ && t.mirrors && !camera_stands() &&
          share_within(t.looked(), body) >= p_.body.nested && t.looked().area() < p_.leave * body.area();
 }
 
@@ -151,9 +151,8 @@ void EvidenceTracker::match_look(bool sure) {
   pair_by_overlap(overlap_of, [&](std::size_t i, std::size_t j, double overlap) {
     EvidenceTrack& t = tracks_[i];
     const PersonDetection& body = bodies_[j];
-    const bool misfits = looks_enclose_ ? t.mirrors && overlap < p_.leave && camera_stood_ < p_.still_time
-                                        : is_piece(t, body.box);
-    if (sure && misfits) {
+    const bool differs = looks_enclose_ && t.mirrors && !camera_stands() && overlap < p_.leave;
+    if (sure && (differs || is_piece(t, body.box))) {
       t.mirrors = false;
       t.distrust();
     }
@@ -237,7 +236,7 @@ void EvidenceTracker::match_motion(std::span<const Track> motion) {
   const auto overlap_of = [&](std::size_t i, std::size_t j) {
     return intersection_over_union(tracks_[i].box(), reduced(motion[j].box));
   };
-  const bool stands = !looks_enclose_ && camera_stood_ >= p_.still_time;
+  const bool stands = !looks_enclose_ && camera_stands();
   pair_by_overlap(overlap_of, [&](std::size_t i, std::size_t j, double overlap) {
     EvidenceTrack& t = tracks_[i];
     t.motion_id = motion[j].id;
@@ -324,11 +323,9 @@ void EvidenceTracker::end_tracks() {
   for (EvidenceTrack& t : tracks_) {
     t.travelled = t.travelled || t.travels(p_.travel);
     t.moved = t.moved || t.travelled;
-    const bool alone =
-        t.mirrors && t.travelled && (camera_stood_ >= p_.still_time || t.moving >= p_.moving_time);
+    const bool alone = t.mirrors && t.travelled && (camera_stands() || t.moving >= p_.moving_time);
     // Windows are mistaken at one place of a still picture again and again; a person there moves at some time.
-    const bool person =
-        t.shown() && (t.mirrors || t.moved || looks_enclose_ || camera_stood_ < p_.still_time);
+    const bool person = t.shown() && (t.mirrors || t.moved || looks_enclose_ || !camera_stands());
     if (t.evidence >= p_.publish && (person || alone)) t.published = true;
   }
   std::erase_if(tracks_, [&](const EvidenceTrack& t) {

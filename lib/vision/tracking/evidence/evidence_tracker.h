@@ -80,6 +80,7 @@ class EvidenceTracker {
   };
   Known& know(std::uint32_t motion_id);
   double shown_time() const;
+  bool camera_stands() const { return camera_stood_ >= p_.still_time; }
   Box reduced(const Box& box) const;
   bool should_be_seen(const EvidenceTrack& track) const;
   bool inside_moves(const Box& box, bool calm) const;
