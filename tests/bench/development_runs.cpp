@@ -67,9 +67,7 @@ std::vector<Outcome> run_elements(const DevelopmentSequence& sequence, int width
     if (const std::size_t at = line.find("motiondetect"); at != std::string::npos)
       line.insert(at + std::strlen("motiondetect"), " analysis-width=" + std::to_string(width));
     DevelopmentRun run(sequence, mirrored);
-    if (!for_each_sample(sequence.source + " ! videoconvert" +
-                             (mirrored ? " ! videoflip video-direction=horiz ! videoconvert" : "") +
-                             " ! video/x-raw,format=I420 ! " + line + " ! appsink name=out sync=false",
+    if (!for_each_sample(line_of(sequence, mirrored) + " ! " + line + " ! appsink name=out sync=false",
                          [&](GstSample* sample, int) {
                            run.add(found_on(gst_sample_get_buffer(sample)), size_of(sample),
                                    seconds_of(sample));

@@ -106,6 +106,11 @@ People read_truth(const DevelopmentSequence& sequence) {
   return people;
 }
 
+std::string line_of(const DevelopmentSequence& sequence, bool mirrored) {
+  return sequence.source + " ! videoconvert" +
+         (mirrored ? " ! videoflip video-direction=horiz ! videoconvert" : "") + " ! video/x-raw,format=I420";
+}
+
 DevelopmentRun::DevelopmentRun(const DevelopmentSequence& sequence, bool mirrored)
     : labels_(sequence.labels), mirrored_(mirrored), people_(read_truth(sequence)) {}
 

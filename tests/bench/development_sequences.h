@@ -31,6 +31,8 @@ struct DevelopmentSequence {
 };
 // In the order of their names. A folder of the other kinds is not listed.
 std::vector<DevelopmentSequence> development_sequences(const std::filesystem::path& data);
+// The source as it is, or mirrored, as I420.
+std::string line_of(const DevelopmentSequence& sequence, bool mirrored);
 // Of one labelled object: those frames in which it is not absent.
 People read_truth(const DevelopmentSequence& sequence);
 

@@ -58,19 +58,17 @@ std::vector<PatrolFigures> measure_real(const Twin& twin, const std::string& ele
     if (sequence == sequences.end()) return {};
     const People people = read_truth(*sequence);
     for (const bool mirrored : {false, true}) {
-      const auto figures = run(sequence->source + " ! videoconvert" +
-                                   (mirrored ? " ! videoflip video-direction=horiz ! videoconvert" : "") +
-                                   " ! video/x-raw,format=I420 ! " + elements,
-                               [&](GstBuffer*, vision::Size size, int n) {
-                                 std::vector<Subject> subjects;
-                                 const auto here = people.find(n);
-                                 if (here == people.end()) return subjects;
-                                 for (Person person : here->second) {
-                                   if (mirrored) person.box.x = size.width - person.box.right();
-                                   subjects.push_back({person});
-                                 }
-                                 return subjects;
-                               });
+      const auto figures =
+          run(line_of(*sequence, mirrored) + " ! " + elements, [&](GstBuffer*, vision::Size size, int n) {
+            std::vector<Subject> subjects;
+            const auto here = people.find(n);
+            if (here == people.end()) return subjects;
+            for (Person person : here->second) {
+              if (mirrored) person.box.x = size.width - person.box.right();
+              subjects.push_back({person});
+            }
+            return subjects;
+          });
       if (!figures) return {};
       all.push_back(*figures);
     }
