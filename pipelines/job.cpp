@@ -87,8 +87,7 @@ gboolean Job::on_watch(gpointer data) {
   job.idle_ = frames == job.watched_frames_ ? job.idle_ + 1 : 0;
   job.watched_frames_ = frames;
   if (job.idle_ < kPatience) return G_SOURCE_CONTINUE;
-  job.end((job.path_.empty() ? "the patrol" : job.path_) + ": no frame follows frame " +
-          std::to_string(frames));
+  job.end(job.name() + ": no frame follows frame " + std::to_string(frames));
   return G_SOURCE_REMOVE;
 }
 
@@ -152,8 +151,7 @@ bool Job::run() {
   g_main_loop_unref(loop_);
   loop_ = nullptr;
   if (terminal_ && frames_ > 0) std::fprintf(stderr, "\r\033[K");
-  if (error_.empty() && frames_ == 0)
-    error_ = (path_.empty() ? "the patrol" : path_) + " has no frame that could be decoded";
+  if (error_.empty() && frames_ == 0) error_ = name() + " has no frame that could be decoded";
   return error_.empty();
 }
 

@@ -41,6 +41,8 @@ class Job {
   void end(std::string error);
 
   GstElement* pipeline_;
+  std::string name() const { return path_.empty() ? "the patrol" : path_; }
+
   std::string path_, folder_, error_;
   VideoFile video_;
   GMainLoop* loop_ = nullptr;  // while it runs

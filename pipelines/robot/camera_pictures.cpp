@@ -46,8 +46,7 @@ void Camera::drop_frames(const char* queue, std::atomic<bool>& pass) {
 }
 
 // In front of the decoder and of the detection, so that what is late costs next to nothing and the next frame is younger.
-// One thread goes through both. A file and a simulated robot wait for
-// their reader and are never late.
+// One thread goes through both. A file and a simulated robot wait for their reader and are never late.
 void Camera::drop_late_frames() {
   if (waits_for_reader(settings_.source.kind)) return;
   late_ = {};
