@@ -55,8 +55,8 @@ START_TEST(in_another_only_one_that_stands_out_and_after_a_while) {
 }
 END_TEST
 
-// Times 1.3 of what is around makes nobody believed, and keeps who is.
-START_TEST(who_was_believed_needs_only_more_inside_than_around) {
+// 1.3 times what is around makes no track believed, and keeps one that is.
+START_TEST(a_track_that_was_believed_needs_only_more_inside_than_around) {
   OwnMotionEvidence seen, calm, fresh;
   ck_assert(believed(seen, difference(10, 40), 25));
   ck_assert(believed(seen, difference(20, 26), 100));
@@ -107,7 +107,7 @@ int main() {
   return run_suite(
       "own_motion_evidence",
       {in_a_calm_scene_every_track_is_believed_at_once, in_another_only_one_that_stands_out_and_after_a_while,
-       who_was_believed_needs_only_more_inside_than_around,
+       a_track_that_was_believed_needs_only_more_inside_than_around,
        a_track_that_stands_out_no_more_is_doubted_and_a_hidden_one_keeps_what_it_had,
        what_was_seen_while_the_scene_was_calm_counts_when_it_is_no_longer,
        without_a_difference_every_track_is_believed, boxes_outside_the_picture_and_many_tracks_do_no_harm});

@@ -17,7 +17,7 @@ constexpr struct Parameters {
   double calm = 0.9;
   // Times the difference around, from which on a track is believed. swept: 1.4 to 1.8; with 1.4 5 identities, with 1.8 a recall of
   // .347. That it stays so while there is more inside gives 1 of IDF1, 2 of the recall and no identity more with nobody, and
-  // takes 2 of MOTA; a head that follows somebody from a turning robot has him in the picture all the time instead of .79 (bench-patrol).
+  // takes 2 of MOTA; a head that follows a person from a turning robot keeps the person in the picture all the time instead of .79 (bench-patrol).
   double contrast = 1.6;
   // Grey levels that are added to both: where little is left over anywhere, noise decides. swept: 1 to 4; with 1 4.7
   // identities, with 4 an IDF1 of .656.
