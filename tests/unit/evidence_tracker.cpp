@@ -208,6 +208,16 @@ START_TEST(what_sways_in_one_place_is_nobody_unless_a_look_shows_it) {
 }
 END_TEST
 
+// A track that goes across the wall where nobody is.
+START_TEST(before_a_moving_camera_a_motion_track_without_motion_inside_is_nobody) {
+  Scene scene;
+  scene.still = false, scene.pan = 2;
+  for (int n = 0; n < 24; ++n)
+    ck_assert(
+        scene.frame({}, {motion_track(7, body_at(200 + (240 * kSeconds + scene.pan) * n), 240)}).empty());
+}
+END_TEST
+
 START_TEST(before_a_moving_camera_a_motion_track_must_move_inside_for_a_while) {
   for (const double speed : {0.0, 120.0, 240.0}) {  // pixels a second; half a height, a height
     Scene scene;
@@ -674,6 +684,7 @@ int main() {
                     a_person_whom_no_look_shows_any_more_ends,
                     before_a_still_camera_a_motion_track_is_published_as_it_is_once_it_has_gone_somewhere,
                     what_sways_in_one_place_is_nobody_unless_a_look_shows_it,
+                    before_a_moving_camera_a_motion_track_without_motion_inside_is_nobody,
                     before_a_moving_camera_a_motion_track_must_move_inside_for_a_while,
                     in_a_shaken_scene_motion_tracks_are_no_witness,
                     a_look_makes_a_motion_track_a_person_and_leaves_its_box_and_identity,
