@@ -73,7 +73,7 @@ AnalysisPrivate& priv_of(gpointer instance) {
 
 GstBaseTransformClass* parent_class();
 
-// Queries at the first frame after caps or RECONFIGURE, when all elements downstream have received the caps.
+// Queries at the first frame after caps or RECONFIGURE: elements downstream have received the caps, up to the first queue.
 void ask_downstream(GstBaseTransform* trans, AnalysisPrivate& priv) {
   const bool ask = priv.ask.exchange(false);
   if (ask) priv.wanted = ask_for_record(GST_BASE_TRANSFORM_SRC_PAD(trans));

@@ -54,6 +54,7 @@ bool Detection::start() {
   GST_DEBUG_CATEGORY_INIT(detection_debug, "cerberusdetection", 0, "the stages of detection");
   State& state = state_.emplace();
   carrier_.forget();
+  looks_promised_ = false;
   {
     const std::lock_guard lock(burnt_in_lock_);
     burnt_in_ = {};
@@ -166,6 +167,7 @@ Analyser::Outcome Detection::analyse(Frame& frame) {
 
   bool keep = true;
   frame.everything = (frame.wanted & kRecordForReaders) != 0;
+  state.boxes_taken = false;
   read_looks(frame, step_of(frame));
   if (has(Stage::regions)) {
     const int how = state.settings.keep_planes;
@@ -225,7 +227,7 @@ void Detection::repeat(Frame& frame) {
   if (has(Stage::tracks)) {
     publish_calm(frame.buffer);
     for (CerberusRegion& region : state.moving) region.age += clock_time(step);
-    read_looks(frame, step);
+    if (state.judged) read_looks(frame, step);  // there is a picture that persons are followed in
   }
   publish(frame, {}, step);
 }
@@ -376,7 +378,6 @@ void Detection::flush(bool begins) {
 }
 
 void Detection::new_caps() {
-  looks_promised_ = false;
   if (state_) forget_looks();
 }
 
@@ -417,13 +418,16 @@ void Detection::complain_of_labels(bool person) {
                         (nullptr));
 }
 
-// Boxes of persons that other elements have found are the result of a look at this frame.
+// Boxes of persons that other elements have found are the result of a look at this frame. A copy of a frame, as videorate makes
+// it, has the same boxes once more.
 void Detection::read_boxes(const Frame& frame, double step) {
   State& state = *state_;
   if (frame.fresh) state.look_times.reset();  // how long the break was says nothing of the detector
   state.looks.begins = state.looks.ends = 0;
   state.looks.bodies.clear();
   state.looks.encloses = vision::kNetworkUse.encloses;
+  state.looks.of_this_frame = false;
+  if (state.boxes_taken) return state.look_times.pass(step);
   read_foreign_boxes(frame.buffer, frame.size, state.boxes);
   for (const ForeignBox& found : state.boxes)
     if (found.person)
@@ -433,6 +437,7 @@ void Detection::read_boxes(const Frame& frame, double step) {
   state.looks.of_this_frame = state.look_times.is_look(step, !state.looks.bodies.empty());
   state.has_looks = state.has_looks || state.looks.of_this_frame;
   if (!state.boxes.empty()) {
+    state.boxes_taken = true;
     state.since_looks = 0;
     complain_of_labels(!state.looks.bodies.empty());
   }

@@ -64,9 +64,10 @@ class Detection : public Analyser {
     EvidenceRegions evidence;                       // of both witnesses
     PersonLooks looks;                              // of a person detector upstream: of the last frame
     std::vector<ForeignBox> boxes;                  // that other elements have found, of the last frame
-    vision::LookTimes look_times;                   // of those of persons
-    bool has_looks = false;                         // there has been one, and not too long ago
-    double since_looks = 0;                         // s without looks and boxes
+    bool boxes_taken = false;             // of the last picture, the copies of which have them again
+    vision::LookTimes look_times;         // of those of persons
+    bool has_looks = false;               // there has been one, and not too long ago
+    double since_looks = 0;               // s without looks and boxes
     int strange_boxes = 0;                // frames with boxes of other elements, of which none is a person's
     int frames_unlooked = 0;              // in a row, while looks should come
     bool judges = false, judged = false;  // by it, tracks of what moves; those of the last frame
@@ -121,7 +122,7 @@ class Detection : public Analyser {
   HeadMotionMonitor carrier_;      // receives poses in any thread, so not part of the state
   Answer<guint> answer_;
   MotionWatch watch_;
-  std::atomic<bool> looks_promised_ = false;  // by a person detector upstream, for frames of these caps
+  std::atomic<bool> looks_promised_ = false;  // by a person detector upstream
 };
 
 template <vision::Stage kFirst, vision::Stage kLast = kFirst, typename Settings = Adjustable<DetectSettings>>

@@ -429,7 +429,7 @@ void begin_look(State& state, const vision::PictureSource& source, vision::Size 
   state.next_look = (now - state.next_look > period / 2 ? now : state.next_look) + period;
 }
 
-// At the first frame after caps or RECONFIGURE, when all elements downstream have received the caps.
+// At the first frame after caps or RECONFIGURE: elements downstream have received the caps, up to the first queue.
 void ask(GstBaseTransform* transform, Private& priv) {
   State& state = priv.state;
   if (!state.live) state.live = cerberus::plugin::is_live(GST_BASE_TRANSFORM_SINK_PAD(transform));

@@ -151,6 +151,77 @@ GST_START_TEST(a_detector_of_every_frame_ends_a_person_soon) {
 }
 GST_END_TEST
 
+// As videorate makes three times as many frames: the copies have the boxes once more.
+GST_START_TEST(boxes_on_copies_of_a_frame_are_no_further_looks) {
+  const scene::World world = walk();
+  constexpr int kCopies = 3;
+  scene::Line line("motiondetect");
+  std::set<guint> identities;
+  int frames = 0;
+  for (int n = 0; n < kGone; ++n)
+    for (int copy = 0; copy < kCopies; ++copy) {
+      GstBuffer* in = frame_of(world, n);
+      GST_BUFFER_PTS(in) += static_cast<GstClockTime>(copy) * scene::kStep / kCopies;
+      if (copy > 0) GST_BUFFER_FLAG_SET(in, GST_BUFFER_FLAG_GAP);
+      if (n % kLook == 0)
+        add_region_of_interest(in, "person", world.figure_left(n), world.figure_top(), scene::kFigureWidth,
+                               scene::kFigureHeight, .9);
+      GstBuffer* out = line.through(in);
+      const Regions regions(out);
+      for (guint i = 0; i < regions.size(); ++i)
+        if (regions[i].person)
+          identities.insert(regions[i].id), ++frames, expect_figure(regions[i], world, n);
+      gst_buffer_unref(out);
+    }
+  fail_unless_equals_int(identities.size(), 1);
+  fail_unless(frames >= kCopies * (kGone - kLook - 1), "%d", frames);
+}
+GST_END_TEST
+
+// videorate in front of the detector: the first box may be on a copy. What is published stays so.
+GST_START_TEST(a_first_look_at_a_copy_takes_nothing_away) {
+  scene::World world;
+  scene::Line line("motiondetect");
+  constexpr int kFirst = 20;
+  for (int n = 0; n < 2 * kFirst; ++n)
+    for (const bool copy : {false, true}) {
+      GstBuffer* in = scene::grey_buffer(world, n);
+      if (copy) {
+        GST_BUFFER_PTS(in) += scene::kStep / 2;
+        GST_BUFFER_FLAG_SET(in, GST_BUFFER_FLAG_GAP);
+      }
+      if (copy && n >= kFirst && (n - kFirst) % kLook == 0)
+        add_region_of_interest(in, "person", world.figure_left(n), world.figure_top(), scene::kFigureWidth,
+                               scene::kFigureHeight, .9);
+      GstBuffer* out = line.through(in);
+      if (n >= kFirst - 1) fail_unless_equals_int(Regions(out).size(), 1);
+      gst_buffer_unref(out);
+    }
+}
+GST_END_TEST
+
+// Both witnesses count, whether the detector looks at all frames or at some.
+GST_START_TEST(who_walks_before_a_detector_of_every_frame_moves) {
+  const scene::World world;
+  for (const int look : {1, 2, kLook}) {
+    scene::Line line("motiondetect");
+    int persons = 0, moving = 0;
+    for (int n = 0; n < kGone; ++n) {
+      GstBuffer* in = scene::grey_buffer(world, n);
+      if (n % look == 0)
+        add_region_of_interest(in, "person", world.figure_left(n), world.figure_top(), scene::kFigureWidth,
+                               scene::kFigureHeight, .9);
+      GstBuffer* out = line.through(in);
+      const Regions regions(out);
+      for (guint i = 0; i < regions.size(); ++i) persons += regions[i].person, moving += regions[i].motion;
+      gst_buffer_unref(out);
+    }
+    fail_unless(persons >= kGone - 2 * kLook && moving >= persons - kLook, "look %d: %d persons, %d move",
+                look, persons, moving);
+  }
+}
+GST_END_TEST
+
 // Before a camera that stands what moves has a track before the detector looks first: it is the same afterwards.
 GST_START_TEST(the_first_look_leaves_the_tracks_of_before_as_they_are) {
   scene::World world;
@@ -429,6 +500,9 @@ Suite* foreign_boxes_suite() {
   suite_add_tcase(suite, tests);
   tcase_add_test(tests, a_detector_of_2_hz_gives_persons_who_are_followed_between_its_looks_and_end);
   tcase_add_test(tests, a_detector_of_every_frame_ends_a_person_soon);
+  tcase_add_test(tests, boxes_on_copies_of_a_frame_are_no_further_looks);
+  tcase_add_test(tests, a_first_look_at_a_copy_takes_nothing_away);
+  tcase_add_test(tests, who_walks_before_a_detector_of_every_frame_moves);
   tcase_add_test(tests, the_first_look_leaves_the_tracks_of_before_as_they_are);
   tcase_add_test(tests, a_first_look_at_another_place_leaves_the_tracks_of_before_where_they_are);
   tcase_add_test(tests, boxes_follow_a_picture_that_is_converted_and_scaled_on_its_way);

@@ -132,6 +132,7 @@ GST_START_TEST(one_warning_says_that_what_it_has_seen_is_lost_by_cropping) {
     const char* launch;
     bool lost;
   } cases[] = {{"personverify require=person ! videocrop left=20 ! motiondetect ! identity", true},
+               {"personverify require=person ! queue ! videocrop left=20 ! motiondetect ! identity", true},
                {"videocrop left=20 ! personverify require=person ! motiondetect ! identity", false},
                {"personverify require=person ! videoscale ! video/x-raw,width=160,height=120 ! motiondetect "
                 "! identity",
@@ -139,7 +140,10 @@ GST_START_TEST(one_warning_says_that_what_it_has_seen_is_lost_by_cropping) {
                {"motiondetect ! videocrop left=20 ! personverify ! identity", false}};
   for (const auto& each : cases) {
     Line line(each.launch);
-    for (int n = 0; n < 120; ++n) gst_buffer_unref(line.through(kTurning.frame(n)));
+    for (int n = 0; n < 120; ++n) {
+      fail_unless_equals_int(gst_harness_push(line.harness, kTurning.frame(n)), GST_FLOW_OK);
+      gst_buffer_unref(gst_harness_pull(line.harness));
+    }
     const auto told = line.messages(GST_MESSAGE_WARNING);
     fail_unless_equals_int(told.size(), each.lost);
     if (each.lost) fail_unless(told[0].find("crop") != std::string::npos, "%s", told[0].c_str());

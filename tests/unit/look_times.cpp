@@ -65,6 +65,12 @@ START_TEST(a_look_that_missed_somebody_makes_no_slow_detector_of_it) {
 }
 END_TEST
 
+START_TEST(one_box_out_of_step_makes_no_fast_detector_of_it) {
+  // The look at frame 30 has a second result.
+  ck_assert(missed({0, 10, 20, 30, 31, 40, 50, 60, 70, 80}, 84).empty());
+}
+END_TEST
+
 START_TEST(a_single_look_is_missed_after_a_second) {
   const auto found = missed({5}, 5 + 25 + 25);
   ck_assert_uint_eq(found.size(), 1);
@@ -94,5 +100,6 @@ int main() {
       "look_times", {without_boxes_nothing_is_a_look, between_the_looks_of_a_slow_detector_nobody_is_missed,
                      who_has_left_is_missed_once_an_interval, a_detector_of_every_frame_misses_at_every_frame,
                      a_look_that_missed_somebody_makes_no_slow_detector_of_it,
-                     a_single_look_is_missed_after_a_second, a_break_is_no_interval});
+                     one_box_out_of_step_makes_no_fast_detector_of_it, a_single_look_is_missed_after_a_second,
+                     a_break_is_no_interval});
 }

@@ -2,6 +2,7 @@
 #include "vision/persons/look_times.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace cerberus::vision {
 namespace {
@@ -15,15 +16,19 @@ constexpr double kOverdue = 1.5;
 }  // namespace
 
 double LookTimes::usual() const {
-  double shortest = kLongest;
-  for (const double each : intervals_)
-    if (each > 0) shortest = std::min(shortest, each);
-  return shortest < kLongest ? shortest : kUnknown;
+  std::array<double, kKept> known = intervals_;
+  std::ranges::sort(known, std::greater());
+  const auto kept = std::ranges::count_if(known, [](double each) { return each > 0; });
+  return kept == 0 ? kUnknown : known[static_cast<std::size_t>(std::max<std::ptrdiff_t>(kept - 2, 0))];
+}
+
+void LookTimes::pass(double seconds) {
+  since_boxes_ += seconds;
+  since_look_ += seconds;
 }
 
 bool LookTimes::is_look(double seconds, bool boxes) {
-  since_boxes_ += seconds;
-  since_look_ += seconds;
+  pass(seconds);
   if (boxes) {
     if (begun_ && since_boxes_ < kLongest) intervals_[next_++ % kKept] = since_boxes_;
     begun_ = true;

@@ -14,12 +14,15 @@ class LookTimes {
   // Called once for each frame. seconds: since the previous one. boxes: it has boxes of persons. Returns whether it is
   // looked at: it has boxes, or a look is overdue, which then has shown nobody. None is before the first boxes.
   bool is_look(double seconds, bool boxes);
+  // Called instead for a frame that is no look whatever it has.
+  void pass(double seconds);
 
  private:
+  // The second shortest: a look now and then shows nobody, and the interval around it is longer; a result that comes a frame
+  // late, or a second one of a look, makes a shorter one.
   double usual() const;
 
-  static constexpr std::size_t kKept =
-      4;  // a look now and then shows nobody: the interval around it is longer
+  static constexpr std::size_t kKept = 4;
   std::array<double, kKept> intervals_{};  // s, of the last looks with boxes; 0: none
   std::size_t next_ = 0;
   bool begun_ = false;

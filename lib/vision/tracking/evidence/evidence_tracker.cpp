@@ -229,7 +229,7 @@ void EvidenceTracker::mirror(EvidenceTrack& t, const Track& motion) const {
 void EvidenceTracker::match_motion(std::span<const Track> motion) {
   rows_.clear(), columns_.clear();
   for (std::size_t i = 0; i < tracks_.size(); ++i)
-    if (!tracks_[i].hit && !tracks_[i].mirrors) rows_.push_back(i);
+    if (!tracks_[i].mirrors) rows_.push_back(i);
   for (std::size_t j = 0; j < motion.size(); ++j)
     if (!used_[j] && motion[j].state == TrackState::seen && motion[j].kind != RegionKind::group)
       columns_.push_back(j);
