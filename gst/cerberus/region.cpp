@@ -28,9 +28,11 @@ constexpr cerberus::Field kFields[] = {
     {"distance", Type::known, offsetof(CerberusRegion, distance)},
 };
 
-// Part of the binary interface: fields take the place of the reserved ones. By hand, of structures of a 64-bit system.
-static_assert(sizeof(gpointer) != 8 ||
-              (offsetof(CerberusRegion, motion) == 104 && sizeof(CerberusRegion) == 136));
+// Part of the binary interface: fields take the place of the reserved ones. By hand, of structures of 64-bit systems, and of
+// 32-bit ones that align numbers of 8 bytes to 8, as ARM does.
+static_assert(alignof(CerberusRegion) != 8 ||
+              (offsetof(CerberusRegion, motion) == 104 &&
+               sizeof(CerberusRegion) == (sizeof(gpointer) == 8 ? 136 : 120)));
 
 void moves_somewhere(CerberusRegion& region) {
   region.bearing = region.distance = NAN;

@@ -84,8 +84,8 @@ std::vector<CerberusRegion>& EvidenceRegions::update(const EvidenceInput& frame,
   seen.still = frame.motion.still;
   seen.calm = frame.calm;
   seen.persons_only = persons_only;
+  seen.counts = [&frame](const vision::Box& box) { return frame.zones.contain(box); };
   for (const vision::EvidenceResult& found : tracker_.update(seen, motion_, result(looks))) {
-    if (found.motion < 0 && !frame.zones.contain(found.box)) continue;
     CerberusRegion& region = regions_.emplace_back(
         found.motion >= 0 ? motion[static_cast<std::size_t>(found.motion)] : region_of_person(found));
     region.id = found.id, region.tracked = TRUE;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -47,6 +48,7 @@ class Scene {
   double pan = 0;         // frame pixels a frame by which the wall moves
   bool encloses = false;  // EvidenceLook::encloses
   bool persons_only = false;
+  std::function<bool(const Box&)> counts;
   bool goes_on = false;  // it has begun before the first frame
 
   // Bodies at these columns of the frame. late: what the look at an earlier frame has shown.
@@ -64,6 +66,7 @@ class Scene {
     f.seconds = seconds;
     f.fresh = number_++ == 0 && !goes_on;
     f.persons_only = persons_only;
+    f.counts = counts;
     f.size = kFrame;
     f.picture = picture_.view();
     f.motion = Transform::translation(pan, 0);
@@ -613,6 +616,39 @@ START_TEST(identities_count_in_the_order_of_publication) {
 }
 END_TEST
 
+// Of two, the left one stands for a while where only what motion shows counts.
+START_TEST(who_does_not_count_takes_no_identity_and_makes_no_group_vanish) {
+  Scene scene;
+  scene.calm = 0.4, scene.still = false;
+  scene.counts = [](const Box& box) { return box.x > 250; };
+  bool seen = false;
+  for (int n = 0; n < 48; ++n) {
+    std::vector<PersonDetection> late{{body_at(100), kSure}};
+    if (n > 24) late.push_back({body_at(400), kSure});
+    const bool due = n % kLook == 1;
+    for (const EvidenceResult& found :
+         scene.frame({100, 400}, {}, due ? std::optional(late) : std::nullopt)) {
+      ck_assert_msg(found.id == 1 && found.box.x > 250, "%u at %.0f", found.id, found.box.x);
+      seen = true;
+    }
+    if (n % kLook == 0) scene.look();
+  }
+  ck_assert(seen);
+
+  Scene group;
+  group.counts = [](const Box&) { return false; };
+  for (int n = 0; n < 72; ++n) {
+    const double x = 200 + 4 * n;
+    const Track both = motion_track(7, {x - 5, 115, 180, 250}, 0, RegionKind::group);
+    const std::vector<PersonDetection> late{{body_at(x - 4), kSure}, {body_at(x + 86), kSure}};
+    const auto found =
+        group.frame({x, x + 90}, {both}, n > 24 && n % kLook == 1 ? std::optional(late) : std::nullopt);
+    if (n >= 24) ck_assert_msg(found.size() == 1 && found[0].motion == 0, "frame %d: %zu", n, found.size());
+    if (n % kLook == 0) group.look();
+  }
+}
+END_TEST
+
 START_TEST(what_has_been_published_alone_keeps_its_identity_when_looks_begin_and_when_they_end) {
   Scene scene;
   ck_assert_uint_eq(scene.tracker.publish_alone(3), 1);
@@ -709,6 +745,7 @@ int main() {
                     a_frame_of_the_same_time_leaves_a_velocity_that_is_a_number,
                     an_identity_that_motion_gives_back_is_the_persons_again,
                     identities_count_in_the_order_of_publication,
+                    who_does_not_count_takes_no_identity_and_makes_no_group_vanish,
                     what_has_been_published_alone_keeps_its_identity_when_looks_begin_and_when_they_end,
                     after_a_reset_nothing_is_known_and_no_identity_is_given_twice,
                     the_steady_state_allocates_nothing});

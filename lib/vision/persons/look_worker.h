@@ -28,7 +28,6 @@ class LookWorker {
   void start(std::unique_ptr<WholeFrameDetector> detector);
   // Returns when a look in progress has ended; its result is dropped.
   void stop();
-  bool is_running() const { return thread_.joinable(); }
   // While it runs.
   bool sees_colours() const { return detector_->sees_colours(); }
 

@@ -360,11 +360,21 @@ void EvidenceTracker::remember_motion() {
   }
 }
 
+Box EvidenceTracker::in_frame(const Box& reduced) const {
+  return inside(scaled(reduced, static_cast<double>(frame_.size.width) / frame_.picture.width,
+                       static_cast<double>(frame_.size.height) / frame_.picture.height),
+                frame_.size);
+}
+
+bool EvidenceTracker::counts(const EvidenceTrack& t) const {
+  return t.published && (t.mirrors || !frame_.counts || frame_.counts(in_frame(t.box())));
+}
+
 // Published persons, one each, that lie in the box.
 double EvidenceTracker::area_of_persons_in(const Box& box) const {
   double area = 0;
   for (const EvidenceTrack& t : tracks_)
-    if (t.published && t.shown() && !t.holds_several && share_within(t.box(), box) >= p_.body.nested)
+    if (counts(t) && t.shown() && !t.holds_several && share_within(t.box(), box) >= p_.body.nested)
       area += t.box().area();
   return area;
 }
@@ -374,10 +384,10 @@ void EvidenceTracker::publish(std::span<const Track> motion) {
   const double across = static_cast<double>(frame_.size.width) / frame_.picture.width;
   const double down = static_cast<double>(frame_.size.height) / frame_.picture.height;
   for (EvidenceTrack& t : tracks_) {
-    if (!t.published || (!t.mirrors && t.unseen > shown_time())) continue;
+    if (!counts(t) || (!t.mirrors && t.unseen > shown_time())) continue;
     if (frame_.persons_only && !t.person) continue;
     if (t.holds_several && area_of_persons_in(t.box()) >= p_.filled * t.box().area()) continue;
-    const Box box = inside(scaled(t.box(), across, down), frame_.size);
+    const Box box = in_frame(t.box());
     if (box.width < 1 || box.height < 1) continue;
     if (t.id == 0) t.id = ++last_id_;
     EvidenceResult r;

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -29,6 +30,8 @@ struct EvidenceFrame {
   bool still = false;         // the camera stands
   double calm = 1;            // SceneCalm::share()
   bool persons_only = false;  // tracks that no look has shown are not published
+  // Whether a track at this box (frame pixels) is published that motion does not show; empty: everywhere. Called by update() only.
+  std::function<bool(const Box&)> counts;
 };
 
 // What a look at an earlier frame has shown: one box for each body (hits_to_bodies()), frame pixels. A score of .5 is the least of a
@@ -97,6 +100,8 @@ class EvidenceTracker {
   void judge_look(const EvidenceLook& look);
   void end_tracks();
   void remember_motion();
+  Box in_frame(const Box& reduced) const;
+  bool counts(const EvidenceTrack& track) const;
   double area_of_persons_in(const Box& box) const;
   void publish(std::span<const Track> motion);
 
