@@ -385,6 +385,28 @@ START_TEST(before_a_moving_camera_looks_go_before_a_motion_track_that_does_not_f
 }
 END_TEST
 
+// Motion shows the upper half of somebody who comes nearer; a single window that is too large says nothing.
+START_TEST(before_a_still_camera_a_window_goes_before_a_piece_once_some_looks_show_it) {
+  for (const int every : {1, 2}) {  // look
+    Scene scene;
+    for (int n = 0; n <= 9 * kLook; ++n) {
+      const double x = 200 + 4 * n;
+      const Box body = body_at(x), upper{body.x, body.y, body.width, .45 * body.height};
+      const bool whole = n / kLook % every == 0;
+      std::optional<std::vector<PersonDetection>> late;
+      if (n % kLook == 1) late = {{whole ? body_at(x - 4) : upper, kSure}};
+      const auto found = scene.frame({x}, {motion_track(7, upper, 96)}, late);
+      if (n % kLook == 0) scene.look();
+      if (n < 2 * kLook) continue;
+      ck_assert_int_eq(found.size(), 1);
+      ck_assert_uint_eq(found[0].id, 1);
+      if (n < 3 * kLook || every > 1) ck_assert(near(found[0].box, upper));
+      if (n > 5 * kLook && every == 1) ck_assert_msg(near(found[0].box, body), "frame %d", n);
+    }
+  }
+}
+END_TEST
+
 START_TEST(a_doubtful_look_makes_no_person_of_what_moves) {
   Scene scene;
   bring(scene, body_at(200 - kGone), body_at(200));
@@ -731,6 +753,7 @@ int main() {
                     whom_looks_alone_show_is_stopped_after_a_while_at_one_place_and_seen_on_the_way,
                     who_stops_is_stopped_and_who_goes_on_is_seen_again,
                     before_a_moving_camera_looks_go_before_a_motion_track_that_does_not_fit,
+                    before_a_still_camera_a_window_goes_before_a_piece_once_some_looks_show_it,
                     a_doubtful_look_makes_no_person_of_what_moves,
                     what_one_look_at_the_threshold_shows_is_no_person_after_some_that_do_not,
                     a_person_whom_looks_show_no_more_becomes_what_only_moves,

@@ -31,6 +31,7 @@ struct EvidenceTrack {
   bool followed = false;       // the picture has shown where it went to this frame
   bool hit = false;            // observed in this frame
   RegionKind kind = RegionKind::person_like;
+  int piece_looks = 0;  // in a row that show it as a piece of a body
   double evidence = 0;
   double person_evidence = 0;  // what looks alone have added, 0 at least
   double least_seen = kNever;  // its smallest height, pixels, at which a sure look has shown it

@@ -42,7 +42,7 @@ void EvidenceTracker::drop_tracks() {
   number_ = look_number_ = 0;
   period_ = 0;
   looks_enclose_ = false;
-  camera_stood_ = p_.still_time;
+  camera_stood_ = p_.moving_time;
 }
 
 Box EvidenceTracker::reduced(const Box& box) const {
@@ -132,10 +132,14 @@ void EvidenceTracker::pair_by_overlap(const Overlap& overlap_of, const Use& use)
 }
 
 // Whether the track has the place of a motion track that shows a small part of this body only, as parallax leaves of a person
-// ahead of a camera that moves.
+// ahead of a camera that moves, and as is left of one who comes straight at a camera.
 bool EvidenceTracker::is_piece(const EvidenceTrack& t, const Box& body) const {
-  return !looks_enclose_ && t.mirrors && !camera_stands() &&
-         share_within(t.looked(), body) >= p_.body.nested && t.looked().area() < p_.leave * body.area();
+  return !looks_enclose_ && t.mirrors && share_within(t.looked(), body) >= p_.body.nested &&
+         t.looked().area() < p_.leave * body.area();
+}
+
+bool EvidenceTracker::gives_way(const EvidenceTrack& t, const Box& body) const {
+  return is_piece(t, body) && (!camera_stands() || t.piece_looks >= p_.piece_looks);
 }
 
 void EvidenceTracker::match_look(bool sure) {
@@ -146,13 +150,13 @@ void EvidenceTracker::match_look(bool sure) {
     if ((bodies_[j].score >= p_.sure) == sure && bodies_[j].score > p_.least) columns_.push_back(j);
   const auto overlap_of = [&](std::size_t i, std::size_t j) {
     const double overlap = intersection_over_union(tracks_[i].looked(), bodies_[j].box);
-    return sure && is_piece(tracks_[i], bodies_[j].box) ? std::max(overlap, p_.gate) : overlap;
+    return sure && gives_way(tracks_[i], bodies_[j].box) ? std::max(overlap, p_.gate) : overlap;
   };
   pair_by_overlap(overlap_of, [&](std::size_t i, std::size_t j, double overlap) {
     EvidenceTrack& t = tracks_[i];
     const PersonDetection& body = bodies_[j];
     const bool differs = looks_enclose_ && t.mirrors && !camera_stands() && overlap < p_.leave;
-    if (sure && (differs || is_piece(t, body.box))) {
+    if (sure && (differs || gives_way(t, body.box))) {
       t.mirrors = false;
       t.distrust();
     }
@@ -204,6 +208,9 @@ void EvidenceTracker::take_look(const EvidenceLook& look) {
       return body.score >= p_.sure && share_within(body.box, t.looked()) >= p_.body.nested;
     });
     t.holds_several = t.kind == RegionKind::group || inside > 1;
+    const bool piece = std::ranges::any_of(
+        bodies_, [&](const PersonDetection& body) { return body.score >= p_.sure && is_piece(t, body.box); });
+    t.piece_looks = piece ? t.piece_looks + 1 : 0;
   }
   used_.assign(bodies_.size(), 0);
   match_look(true);

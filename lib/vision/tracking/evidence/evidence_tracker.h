@@ -83,11 +83,12 @@ class EvidenceTracker {
   };
   Known& know(std::uint32_t motion_id);
   double shown_time() const;
-  bool camera_stands() const { return camera_stood_ >= p_.still_time; }
+  bool camera_stands() const { return camera_stood_ >= p_.moving_time; }
   Box reduced(const Box& box) const;
   bool should_be_seen(const EvidenceTrack& track) const;
   bool inside_moves(const Box& box, bool calm) const;
   bool is_piece(const EvidenceTrack& track, const Box& body) const;
+  bool gives_way(const EvidenceTrack& track, const Box& body) const;
   void take_look(const EvidenceLook& look);
   template <typename Overlap, typename Use>
   void pair_by_overlap(const Overlap& overlap_of, const Use& use);
