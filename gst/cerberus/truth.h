@@ -41,7 +41,7 @@ typedef struct _CerberusTruthPerson {
  * @base_x: where the robot is on the floor plan, metres
  * @base_y: where the robot is on the floor plan, metres
  * @base_heading: where it is ahead, degrees clockwise from the plan's x
- * @base_speed: metres a second
+ * @base_speed: metres a second, below 0: backwards
  * @base_yaw_rate: degrees a second, positive to the right
  * @pan: of the camera from straight ahead, degrees, positive to the right
  * @tilt: of the camera, degrees, positive up

@@ -44,6 +44,13 @@ std::vector<Route> routes(const char* text, Mover mover) {
 
 const auto kAhead = [](Time) { return Gaze{}; };
 
+Spot place_of(const House& house, int person) {
+  const PersonTruth& truth = house.people()[person];
+  const double angle = house.base().yaw() + truth.bearing;
+  return {house.base().x() + truth.distance * std::cos(angle),
+          house.base().y() + truth.distance * std::sin(angle)};
+}
+
 // A small picture, because none is looked at.
 HouseSettings small() {
   HouseSettings settings;
@@ -99,12 +106,7 @@ START_TEST(people_go_from_room_to_room_and_keep_off_walls_and_each_other) {
     std::vector<std::set<int>> rooms(4);
     for (Time t{}; t < 60s; t += 200ms) {
       house->take(t, kAhead, picture);
-      const auto at = [&](int i) {
-        const PersonTruth& person = house->people()[i];
-        const double angle = house->base().yaw() + person.bearing;
-        return Spot{house->base().x() + person.distance * std::cos(angle),
-                    house->base().y() + person.distance * std::sin(angle)};
-      };
+      const auto at = [&](int i) { return place_of(*house, i); };
       for (int i = 0; i < 4; ++i) {
         const Spot here = at(i);
         // Half of a body's depth from whatever stands.
@@ -218,18 +220,119 @@ START_TEST(a_robot_shakes_while_it_moves_and_a_hand_always) {
 }
 END_TEST
 
+// A lane in which nobody can step aside: the robot comes to rest before the person, and passes nobody.
 START_TEST(a_robot_waits_for_a_person_in_its_way) {
   HouseSettings settings = small();
-  settings.path = routes("at 1 5; go 9 5", Mover::robot);
-  settings.walks = routes("at 4 5; wait 60", Mover::person);
-  const auto house = built(plan_of(kHall), settings);
+  settings.path = routes("at 1 .5; go 9 .5", Mover::robot);
+  settings.walks = routes("at 9.1 .5; wait 60", Mover::person);
+  const auto house = built(plan_of("room lane 0 0 9.5 1\n"), settings);
   std::vector<std::uint8_t> picture;
-  double nearest = 9;
-  for (Time t{}; t < 8s; t += 100ms) {
+  double nearest = 9, stood_at = 0, slowest = 0;
+  for (Time t{}; t < 30s; t += 100ms) {
     house->take(t, kAhead, picture);
     nearest = std::min(nearest, house->people()[0].distance);
+    slowest = std::min(slowest, house->base().speed());
+    if (t > 5s && house->base().speed() == 0 && house->base().yaw_rate() == 0) stood_at = house->base().x();
   }
   ck_assert_double_gt(nearest, .4);
+  ck_assert_double_gt(stood_at, 5);
+  ck_assert_double_lt(stood_at, 8.8);
+  ck_assert_double_lt(slowest, -.1);  // then it backs
+}
+END_TEST
+
+START_TEST(who_gets_no_further_turns_back_and_comes_again) {
+  HouseSettings settings = small();
+  settings.path = routes("at 4.1 3; wait 99", Mover::robot);
+  settings.walks = routes("at 1 3; go 7 3", Mover::person);
+  const auto house =
+      built(plan_of("room a 0 0 4 6\nroom b 4.2 0 4 6\ndoorway a b at=3 width=.9\n"), settings);
+  std::vector<std::uint8_t> picture;
+  int comes = 0;
+  bool near = false;
+  for (Time t{}; t < 40s; t += 100ms) {
+    house->take(t, kAhead, picture);
+    const double away = house->people()[0].distance;
+    if (!near && away < 1.2) near = true, ++comes;
+    if (away > 2) near = false;
+  }
+  ck_assert_int_ge(comes, 2);
+  ck_assert_double_gt(house->people()[0].distance, .3);
+}
+END_TEST
+
+// Longer than a turn all around and a person's rests.
+START_TEST(nobody_and_no_robot_is_stuck_in_the_office) {
+  const FloorPlan plan = office();
+  for (const std::uint32_t seed : {1U, 3U, 5U, 12U}) {
+    HouseSettings settings = small();
+    settings.lens.width = 16, settings.lens.height = 16;
+    settings.seed = seed;
+    const auto house = built(plan, settings);
+    std::vector<std::uint8_t> picture;
+    Time moved{};
+    std::vector<Time> left(2);
+    std::vector<Spot> places(2);
+    for (Time t{}; t < 150s; t += 100ms) {
+      house->take(t, kAhead, picture);
+      if (house->base().speed() != 0 || house->base().yaw_rate() != 0) moved = t;
+      ck_assert_msg(t - moved < 15s, "seed %u: the robot", seed);
+      for (int i = 0; i < 2; ++i) {
+        const Spot here = place_of(*house, i);
+        if (std::hypot(here.x - places[i].x, here.y - places[i].y) > .7) places[i] = here, left[i] = t;
+        ck_assert_msg(t - left[i] < 25s, "seed %u: person %d at %.2f %.2f", seed, i, here.x, here.y);
+      }
+    }
+  }
+}
+END_TEST
+
+// Where another person or the robot stands already.
+START_TEST(a_place_beside_somebody_counts_as_reached) {
+  for (const char* walks :
+       {"at 5 8; go 8 8 1; wait 1; go 9 2 1", "at 5 8; go 2 4 1; wait 1; go 9 2 1 | at 2 4.2; wait 99"}) {
+    HouseSettings settings = small();
+    settings.path = routes("at 8.2 8.2 180; wait 9", Mover::robot);
+    settings.walks = routes(walks, Mover::person);
+    const auto house = built(plan_of(kHall), settings);
+    std::vector<std::uint8_t> picture;
+    double nearest = 9;
+    for (Time t{}; t < 25s; t += 100ms) {
+      house->take(t, kAhead, picture);
+      const Spot here = place_of(*house, 0);
+      nearest = std::min(nearest, std::hypot(here.x - 9, here.y - 2));
+    }
+    ck_assert_double_lt(nearest, .2);
+  }
+}
+END_TEST
+
+// Two who meet head on, and one who meets the robot: what the truth says is how their places change.
+START_TEST(who_steps_aside_walks_there) {
+  HouseSettings settings = small();
+  settings.path = routes("at 6 8; wait 9", Mover::robot);
+  settings.walks = routes("at 2 4; go 10 4 1.2 | at 10 4; go 2 4 1.2 | at 2 8; go 10 8 1.5", Mover::person);
+  const auto house = built(plan_of(kHall), settings);
+  std::vector<std::uint8_t> picture;
+  Spot places[3], velocities[3];
+  double aside = 0;
+  for (int frame = 0; frame < 240; ++frame) {
+    house->take(frame * 50ms, kAhead, picture);
+    for (int i = 0; i < 3; ++i) {
+      const Spot here = place_of(*house, i);
+      const Spot velocity{(here.x - places[i].x) / .05, (here.y - places[i].y) / .05};
+      if (frame > 0)
+        ck_assert_double_eq_tol(std::hypot(velocity.x, velocity.y), house->people()[i].speed, .1);
+      if (frame > 1)
+        ck_assert_double_le(std::hypot(velocity.x - velocities[i].x, velocity.y - velocities[i].y) / .05,
+                            3.05);
+      places[i] = here, velocities[i] = velocity;
+    }
+    aside = std::max(aside, std::abs(places[2].y - 8));
+    ck_assert_double_gt(std::hypot(places[0].x - places[1].x, places[0].y - places[1].y), .35);
+    ck_assert_double_gt(std::hypot(places[2].x - 6, places[2].y - 8), .35);
+  }
+  ck_assert_double_gt(aside, .3);
 }
 END_TEST
 
@@ -254,5 +357,7 @@ int main() {
                        the_truth_is_where_the_walk_leads, a_gaze_to_the_right_moves_the_person_to_the_left,
                        a_sensor_is_triggered_by_who_crosses_its_field_and_not_through_a_wall,
                        a_robot_shakes_while_it_moves_and_a_hand_always, a_robot_waits_for_a_person_in_its_way,
-                       settings_that_cannot_be_are_named});
+                       who_gets_no_further_turns_back_and_comes_again,
+                       nobody_and_no_robot_is_stuck_in_the_office, a_place_beside_somebody_counts_as_reached,
+                       who_steps_aside_walks_there, settings_that_cannot_be_are_named});
 }

@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kStep = .002;  // seconds
 constexpr double kFastest = 1.5, kFastestTurn = sensing::radians(60);
+constexpr double kPatience = 3;                                 // seconds before what stands in its way
+constexpr double kBack = 1;                                     // metres
 constexpr double kThere = .005, kAimed = sensing::radians(.2);  // metres, radians
 
 // The speed from which a way so long suffices to brake, which does not pass its end within a step.
@@ -39,8 +41,8 @@ void DrivenBase::elapse(Time now) {
 
 void DrivenBase::next() {
   current_ = (current_ + 1) % legs_.size();
-  in_leg_ = 0;
-  aims_ = true;
+  in_leg_ = waited_ = 0;
+  aims_ = true, backs_ = false;
   turned_to_ = yaw_ + legs_[current_].angle;
 }
 
@@ -51,6 +53,14 @@ bool DrivenBase::turn(double away) {
   if (std::abs(away) > kAimed || std::abs(rate_) > 2 * most) return false;
   rate_ = 0;
   return true;
+}
+
+void DrivenBase::wait_or_turn_back() {
+  waited_ = blocked_ && speed_ == 0 ? waited_ + kStep : 0;
+  if (waited_ < kPatience) return;
+  waited_ = 0;
+  backs_ = !backs_;
+  to_back_ = kBack;
 }
 
 void DrivenBase::step() {
@@ -70,14 +80,17 @@ void DrivenBase::step() {
         aims_ = !turn(sensing::wrap(std::atan2(away_y, away_x) - yaw_));
         break;
       }
+      wait_or_turn_back();
       // What is left along its heading.
-      const double left = away_x * std::cos(yaw_) + away_y * std::sin(yaw_);
+      const double ahead = away_x * std::cos(yaw_) + away_y * std::sin(yaw_);
+      const double left = backs_ ? to_back_ : ahead;
       const double most =
           std::min({leg.speed, kFastest, braking(std::max(left, 0.), .9 * traits_.acceleration)});
       const double wanted = blocked_ ? 0 : most;
-      speed_ = approach(speed_, wanted, traits_.acceleration * kStep);
-      done = left <= kThere;
-      if (done) speed_ = 0;
+      speed_ = approach(speed_, backs_ ? -wanted : wanted, traits_.acceleration * kStep);
+      done = ahead <= kThere;
+      if (done || left <= kThere) speed_ = 0, backs_ = false;
+      to_back_ += speed_ * kStep;
       break;
   }
   yaw_ += rate_ * kStep;

@@ -35,16 +35,18 @@ class DrivenBase {
 
   // In steps of 2 ms.
   void elapse(Time now);
-  // Something stands in its way: it brakes, and waits until it does not.
+  // Something stands in its way: it brakes. Where that lasts it backs a little, and drives on then.
   void block(bool blocked) { blocked_ = blocked; }
+  bool backs() const { return backs_; }
   double x() const { return x_; }
   double y() const { return y_; }
   double yaw() const { return yaw_; }
-  double speed() const { return speed_; }
+  double speed() const { return speed_; }  // below 0: it backs
   double yaw_rate() const { return rate_; }
 
  private:
   void step();
+  void wait_or_turn_back();
   // Comes nearer to an angle that is so far away; true: it is there and rests.
   bool turn(double away);
   void next();
@@ -53,7 +55,9 @@ class DrivenBase {
   std::vector<Leg> legs_;
   std::size_t current_ = 0;
   double in_leg_ = 0, turned_to_ = 0;
-  bool aims_ = true, blocked_ = false;
+  double waited_ = 0;   // seconds, before what is in its way
+  double to_back_ = 0;  // metres
+  bool aims_ = true, blocked_ = false, backs_ = false;
   double x_, y_, yaw_, speed_ = 0, rate_ = 0;
   Time done_{};
 };

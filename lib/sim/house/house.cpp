@@ -12,6 +12,7 @@ namespace {
 constexpr Time kStep = std::chrono::milliseconds(10);  // of the sensors, and of what gives way to what
 constexpr double kClearance = .35;                     // metres: ways from walls
 constexpr double kLeast = .24;                         // metres: people from walls, half of a body's width
+constexpr double kApart = 1;                           // metres: people from each other and from the robot
 constexpr double kWarm = 6;    // kelvin: a person before a wall, as in lib/sim/pir_sensor.h
 constexpr double kWide = .48;  // metres
 
@@ -229,45 +230,104 @@ std::variant<std::unique_ptr<House>, std::string> House::build(FloorPlan plan,
   return house;
 }
 
-// A person who would walk into a wall or a thing slides along it.
+// A person who would walk into a wall, a thing, somebody or the robot slides along it.
 void House::keep_off(Person& person, const Spot& before) const {
+  constexpr double kBody = .4;  // metres: a person beside another one, or beside the robot
   const Spot now{person.walker.stance().x, person.walker.stance().y};
+  const auto meets = [&](const Spot& place, double x, double y) {
+    return std::hypot(place.x - x, place.y - y) < std::min(kBody, std::hypot(before.x - x, before.y - y));
+  };
   for (const Spot& allowed : {now, Spot{before.x, now.y}, Spot{now.x, before.y}, before})
-    if (room_to_step_.free(allowed)) return person.walker.shift(allowed.x - now.x, allowed.y - now.y);
+    if (room_to_step_.free(allowed) && !meets(allowed, base_.x(), base_.y()) &&
+        std::ranges::none_of(people_, [&](const Person& other) {
+          return &other != &person && meets(allowed, other.walker.stance().x, other.walker.stance().y);
+        }))
+      return person.walker.stop_at(allowed);
 }
 
-// Those who are near each other, or near the robot, go past to the right.
+// Those who come near each other, or near the robot, slow down and go past to the right.
 void House::step_aside() {
-  constexpr double kNear = 1, kFast = 1;  // metres, and metres a second
-  const double seconds = motion::seconds(kStep);
+  constexpr double kAhead = 2, kFast = 2;  // seconds, and metres a second (assumed)
   for (Person& person : people_) {
     const Stance& own = person.walker.stance();
-    double x = 0, y = 0;
-    const auto avoid = [&](double from_x, double from_y) {
-      const double away_x = own.x - from_x, away_y = own.y - from_y, away = std::hypot(away_x, away_y);
-      if (away >= kNear || away < 1e-6) return;
-      const double share = std::min(kNear / away - 1, 2.) * kFast * seconds / away;
-      // Away from it, and to the own right of it.
-      x += share * (away_x + away_y), y += share * (away_y - away_x);
+    const Instruction& now = person.walker.now();
+    const bool goes = now.kind == Instruction::go;
+    // It looks ahead until it stops.
+    double most = kAhead;
+    if (goes && now.stops)
+      most = std::min(most, std::hypot(now.x - own.x, now.y - own.y) / std::max(own.speed, .1));
+    Spot away{}, right{};  // from the others, and past them
+    const auto avoid = [&](const Spot& other, const Spot& velocity) {
+      const Spot from{own.x - other.x, own.y - other.y};
+      const Spot going{person.walker.velocity().x - velocity.x, person.walker.velocity().y - velocity.y};
+      const double square = going.x * going.x + going.y * going.y;
+      const double nearer = -(from.x * going.x + from.y * going.y);
+      const double in = nearer > 0 ? std::min(nearer / square, most) : 0;  // seconds: they are nearest
+      const double least = std::hypot(from.x + in * going.x, from.y + in * going.y);
+      const double here = std::hypot(from.x, from.y);
+      if (least >= kApart || here < 1e-6) return;
+      const double share = std::min((kApart - least) / std::max(in, least), kFast) / here;
+      away.x += share * from.x, away.y += share * from.y;
+      right.x += share * from.y, right.y -= share * from.x;
     };
     for (const Person& other : people_)
-      if (&other != &person) avoid(other.walker.stance().x, other.walker.stance().y);
-    avoid(base_.x(), base_.y());
-    const Instruction& now = person.walker.now();
-    const Spot aside{own.x + x, own.y + y}, on = now.kind == Instruction::go ? Spot{now.x, now.y} : aside;
-    if (room_to_step_.leads(aside, on)) person.walker.shift(x, y);
+      if (&other != &person)
+        avoid({other.walker.stance().x, other.walker.stance().y}, other.walker.velocity());
+    avoid({base_.x(), base_.y()},
+          {base_.speed() * std::cos(base_.yaw()), base_.speed() * std::sin(base_.yaw())});
+    constexpr double kSoon = .1;  // seconds: at .2 people meet in doorways more often
+    const auto possible = [&](const Spot& push) {
+      const Spot aside{own.x + kSoon * push.x, own.y + kSoon * push.y};
+      return room_to_step_.leads(aside, goes ? Spot{now.x, now.y} : aside);
+    };
+    const Spot both{away.x + right.x, away.y + right.y};
+    person.walker.give_way(possible(both) ? both : possible(away) ? away : Spot{});
   }
 }
 
-// The robot waits for those who are before it.
+// A place beside somebody counts as reached, and who gets no further goes back and comes again.
+void House::see_progress() {
+  constexpr double kSoon = 1, kLong = 3;  // seconds (assumed; at 2, deadlocks with six people in the office)
+  const auto lead = [this](Walker& walker) {
+    walker.lead(room_to_step_.way({walker.stance().x, walker.stance().y}, walker.destination()));
+  };
+  for (Person& person : people_) {
+    Walker& walker = person.walker;
+    const Instruction &now = walker.now(), &then = walker.then();
+    if (now.kind != Instruction::go || walker.held_up() < kSoon) continue;
+    const Spot here{walker.stance().x, walker.stance().y}, place{now.x, now.y};
+    const auto beside = [&](double x, double y) { return std::hypot(x - place.x, y - place.y) < kApart; };
+    const bool taken = beside(base_.x(), base_.y()) || std::ranges::any_of(people_, [&](const Person& other) {
+                         return &other != &person && beside(other.walker.stance().x, other.walker.stance().y);
+                       });
+    if (now.stops ? taken && std::hypot(here.x - place.x, here.y - place.y) < 2 * kApart
+                  : then.kind == Instruction::go && room_to_step_.leads(here, {then.x, then.y})) {
+      walker.arrive();
+    } else if (!room_to_step_.leads(here, place)) {
+      lead(walker);
+    } else if (walker.held_up() > kLong) {
+      if (walker.returns())
+        lead(walker);
+      else
+        walker.send_back(room_to_step_.way(here, walker.origin()));
+    }
+  }
+}
+
+// The robot waits for those who are before it. While it backs it heeds what is behind it, walls too.
 void House::heed_people() {
-  constexpr double kAhead = .9, kAside = .4;  // metres
-  base_.block(std::ranges::any_of(people_, [&](const Person& person) {
-    const double x = person.walker.stance().x - base_.x(), y = person.walker.stance().y - base_.y();
-    const double ahead = x * std::cos(base_.yaw()) + y * std::sin(base_.yaw());
-    const double aside = y * std::cos(base_.yaw()) - x * std::sin(base_.yaw());
-    return ahead > 0 && ahead < kAhead && std::abs(aside) < kAside;
-  }));
+  constexpr double kAhead = .9, kBehind = .5, kAside = .4;  // metres
+  const double side = base_.backs() ? -1 : 1;
+  const double way_x = side * std::cos(base_.yaw()), way_y = side * std::sin(base_.yaw());
+  const bool walled =
+      base_.backs() && !room_to_step_.leads({base_.x(), base_.y()},
+                                            {base_.x() + kBehind * way_x, base_.y() + kBehind * way_y});
+  base_.block(walled || std::ranges::any_of(people_, [&](const Person& person) {
+                const double x = person.walker.stance().x - base_.x(),
+                             y = person.walker.stance().y - base_.y();
+                const double ahead = x * way_x + y * way_y, aside = y * way_x - x * way_y;
+                return ahead > 0 && ahead < kAhead && std::abs(aside) < kAside;
+              }));
 }
 
 void House::sense(Time now) {
@@ -302,6 +362,7 @@ void House::elapse(Time now) {
   for (; stepped_ + kStep <= now; stepped_ += kStep) {
     move(stepped_ + kStep);
     step_aside();
+    see_progress();
     heed_people();
     sense(stepped_ + kStep);
   }

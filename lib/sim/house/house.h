@@ -78,6 +78,7 @@ class House {
   void elapse(Time now);
   void keep_off(Person& person, const Spot& before) const;
   void step_aside();
+  void see_progress();
   void heed_people();
   void sense(Time now);
   Pose pose(Time now, const Gaze& gaze) const;
