@@ -341,11 +341,21 @@ START_TEST(settings_that_cannot_be_are_named) {
   settings.path = routes("at 1 5; go 40 5", Mover::robot);
   const auto refused = House::build(plan_of(kHall), settings);
   ck_assert_str_eq(std::get<std::string>(refused).c_str(),
-                   "the robot's path: no free way leads from 1 5 to 40 5");
+                   "the robot's path: no free way leads from 1 5 to 40 5, .35 m from walls and things");
   settings.path.clear();
   settings.walks = routes("at 0 0.05; wait 1", Mover::person);
   const auto walled = House::build(plan_of(kHall), settings);
-  ck_assert_str_eq(std::get<std::string>(walled).c_str(), "a person's walk: 0 0.05 is not free");
+  ck_assert_str_eq(std::get<std::string>(walled).c_str(),
+                   "a person's walk: 0 0.05 is not free, .35 m from walls and things");
+  // Under the doorway that its way leads through.
+  HouseSettings tall = small();
+  tall.camera_height = 2.1;
+  const char* const rooms = "room a 0 0 4 6\nroom b 4.2 0 4 6\ndoorway a b at=3\n";
+  const auto hits = House::build(plan_of(rooms), tall);
+  ck_assert_str_eq(std::get<std::string>(hits).c_str(),
+                   "the camera is as high as the ceiling of 'a-b', where the robot goes");
+  tall.path = routes("at 1 1; wait 1", Mover::robot);
+  ck_assert(std::holds_alternative<std::unique_ptr<House>>(House::build(plan_of(rooms), tall)));
 }
 END_TEST
 

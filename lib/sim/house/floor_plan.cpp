@@ -13,6 +13,7 @@ namespace {
 constexpr std::array<const char*, kSurfaces> kNames{"plaster",  "brick",  "wood",  "carpet", "tiles",
                                                     "concrete", "panels", "books", "cloth",  "metal"};
 constexpr double kThickestWall = .6;  // metres: rooms further apart have no wall in common
+constexpr double kLargest = 200;      // metres, of a plan: light and ways are calculated every 10 cm
 constexpr double kTouch = 1e-6;       // metres
 
 bool number_of(std::string_view word, double& value) {
@@ -155,7 +156,8 @@ class Reader {
     if (space.height > std::min(a.height, b.height)) return line.fail("the doorway is higher than its rooms");
     const bool beside = gap(a.area.right, b.area.left) || gap(b.area.right, a.area.left);
     if (!beside && !gap(a.area.bottom, b.area.top) && !gap(b.area.bottom, a.area.top))
-      return line.fail("'" + a.name + "' and '" + b.name + "' have no wall in common");
+      return line.fail("'" + a.name + "' and '" + b.name +
+                       "' have no wall in common: leave one between them, up to .6 m thick");
     const double from = at - width / 2, to = at + width / 2;
     Opening in_first{}, in_second{};
     if (beside) {
@@ -202,6 +204,7 @@ class Reader {
     if (box.from < 0 || box.from >= box.height) return line.fail("from must be from 0 to below the height");
     const int space = around(box.area, line);
     if (space < 0) return;
+    if (box.height > plan.spaces[space].height) return line.fail("the box is higher than its room");
     for (const int other : plan.spaces[space].boxes)
       if (overlap(box.area, plan.boxes[other].area)) return line.fail("the box overlaps another one");
     plan.spaces[space].boxes.push_back(int(plan.boxes.size()));
@@ -233,6 +236,12 @@ class Reader {
   bool add(const Space& space, Statement& line) {
     for (const Space& other : plan.spaces)
       if (overlap(space.area, other.area)) line.fail("'" + space.name + "' overlaps '" + other.name + "'");
+    Rectangle all = space.area;
+    for (const Space& other : plan.spaces)
+      all = {std::min(all.left, other.area.left), std::min(all.top, other.area.top),
+             std::max(all.right, other.area.right), std::max(all.bottom, other.area.bottom)};
+    if (!(std::max(all.right - all.left, all.bottom - all.top) <= kLargest))
+      line.fail("the plan is larger than 200 m: lengths are metres");
     if (!line.fails()) plan.spaces.push_back(space);
     return !line.fails();
   }

@@ -43,7 +43,12 @@ std::string spot_text(const Spot& spot) {
 }
 
 std::string blocked(const Spot& from, const Spot& to) {
-  return "no free way leads from " + spot_text(from) + " to " + spot_text(to);
+  return "no free way leads from " + spot_text(from) + " to " + spot_text(to) +
+         ", .35 m from walls and things";
+}
+
+std::string taken(const Spot& spot) {
+  return spot_text(spot) + " is not free, .35 m from walls and things";
 }
 
 std::vector<Leg> legs_along(const std::vector<Spot>& way, double speed) {
@@ -83,7 +88,7 @@ std::variant<Start, std::string> patrol_of(const FloorPlan& plan, const Ways& wa
 
 std::variant<Start, std::string> start_of(const Route& route, const Ways& ways, double speed) {
   Start start{route.begin, route.heading, {}};
-  if (!ways.free(route.begin)) return spot_text(route.begin) + " is not free";
+  if (!ways.free(route.begin)) return taken(route.begin);
   Spot here = route.begin;
   const auto drive = [&](const Spot& to, double fast) {
     const auto way = ways.way(here, to);
@@ -107,6 +112,24 @@ std::variant<Start, std::string> start_of(const Route& route, const Ways& ways, 
   return start;
 }
 
+// Where the robot's way leads below a ceiling that its camera would touch: a sentence without its point.
+std::string hits_ceiling(const FloorPlan& plan, Spot at, const std::vector<Leg>& legs, double camera) {
+  const auto below = [&](const Spot& spot) {
+    const int space = plan.space_at(spot.x, spot.y);
+    return space >= 0 && plan.spaces[space].height <= camera ? plan.spaces[space].name : std::string();
+  };
+  std::string low = below(at);
+  for (const Leg& leg : legs) {
+    if (leg.kind != Leg::drive) continue;
+    constexpr double kStride = .05;  // metres: less than a wall's thickness
+    const double way = std::hypot(leg.x - at.x, leg.y - at.y);
+    for (double gone = 0; gone < way && low.empty(); gone += kStride)
+      low = below({at.x + gone / way * (leg.x - at.x), at.y + gone / way * (leg.y - at.y)});
+    at = {leg.x, leg.y};
+  }
+  return low.empty() ? low : "the camera is as high as the ceiling of '" + low + "', where the robot goes";
+}
+
 struct Walk {
   Spot begin;
   double heading = 0;
@@ -123,7 +146,7 @@ constexpr double kUsual = 1.2;  // metres a second
 
 std::variant<Walk, std::string> walk_of(const Route& route, const Ways& ways) {
   Walk walk{route.begin, route.heading, {}};
-  if (!ways.free(route.begin)) return spot_text(route.begin) + " is not free";
+  if (!ways.free(route.begin)) return taken(route.begin);
   Spot here = route.begin;
   double speed = kUsual;
   const auto go = [&](const Spot& to) {
@@ -196,6 +219,7 @@ std::variant<std::unique_ptr<House>, std::string> House::build(FloorPlan plan,
                                      : start_of(settings.path[0], ways, settings.speed);
   if (const auto* wrong = std::get_if<std::string>(&start)) return "the robot's path: " + *wrong;
   auto& [at, heading, legs] = std::get<Start>(start);
+  if (const auto wrong = hits_ceiling(plan, at, legs, settings.camera_height); !wrong.empty()) return wrong;
   std::vector<Walk> walks;
   Dice dice(settings.seed);
   for (const Route& route : settings.walks) {
