@@ -21,7 +21,10 @@ gboolean settings_query(GstElement* element, GstQuery* query) {
   const GstStructure* asked =
       GST_QUERY_TYPE(query) == GST_QUERY_CUSTOM ? gst_query_get_structure(query) : nullptr;
   if (asked && gst_structure_has_name(asked, kSettingsQuery))
-    return guarded(element, FALSE, [&]() -> gboolean {
+    return guarded(element, TRUE, [&]() -> gboolean {
+      // What is left where the element fails as it looks.
+      gst_structure_set(gst_query_writable_structure(query), "fault", G_TYPE_STRING,
+                        "These settings cannot be used.", nullptr);
       gst_structure_set(gst_query_writable_structure(query), "fault", G_TYPE_STRING,
                         settings_fault(element).c_str(), nullptr);
       return TRUE;
