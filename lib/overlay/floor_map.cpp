@@ -41,19 +41,19 @@ void circle(cairo_t* cr, double x, double y, double radius) {
   cairo_arc(cr, x, y, radius, 0, 2 * std::numbers::pi);
 }
 
-// How far one sees the floor over low furniture: to a wall or a pillar.
+// How far one sees the floor over low furniture: to a wall, a pillar or what is high.
 double free_distance(const FloorPlan& plan, double x, double y, double direction) {
   const double dx = std::cos(direction), dy = std::sin(direction);
   double away = 0;
   for (; away < kLongest; away += kRayStep) {
     const double at_x = x + away * dx, at_y = y + away * dy;
-    const bool room = std::ranges::any_of(plan.rooms, [&](const FloorPlan::Area& area) {
+    const auto within = [&](const FloorPlan::Area& area) {
       return at_x >= area.left && at_x <= area.right && at_y >= area.top && at_y <= area.bottom;
-    });
+    };
     const bool pillar = std::ranges::any_of(plan.pillars, [&](const FloorPlan::Pillar& one) {
       return std::hypot(at_x - one.x, at_y - one.y) < one.radius;
     });
-    if (pillar || !room) break;
+    if (pillar || std::ranges::none_of(plan.rooms, within) || std::ranges::any_of(plan.high, within)) break;
   }
   return std::max(0., away - kRayStep);
 }

@@ -21,6 +21,7 @@ struct FloorPlan {
   };
   std::vector<Area> rooms, furniture;
   std::vector<Pillar> pillars;
+  std::vector<Area> high;  // furniture that the camera does not see over
 };
 
 // Metres of the plan; radians clockwise from x.

@@ -78,13 +78,16 @@ GstCaps* fixate(GstBaseSrc* base, GstCaps* caps) {
   return GST_BASE_SRC_CLASS(cerberus_patrol_camera_parent_class())->fixate(base, caps);
 }
 
-overlay::FloorPlan drawn(const sim::FloorPlan& plan) {
+overlay::FloorPlan drawn(const sim::FloorPlan& plan, double camera_height) {
   const auto area = [](const sim::Rectangle& r) {
     return overlay::FloorPlan::Area{r.left, r.top, r.right, r.bottom};
   };
   overlay::FloorPlan drawing;
   for (const sim::Space& space : plan.spaces) drawing.rooms.push_back(area(space.area));
-  for (const sim::Furniture& box : plan.boxes) drawing.furniture.push_back(area(box.area));
+  for (const sim::Furniture& box : plan.boxes) {
+    drawing.furniture.push_back(area(box.area));
+    if (box.from < camera_height && box.height > camera_height) drawing.high.push_back(area(box.area));
+  }
   for (const sim::Pillar& pillar : plan.pillars)
     drawing.pillars.push_back({pillar.x, pillar.y, pillar.radius});
   return drawing;
@@ -106,7 +109,9 @@ gboolean set_caps(GstBaseSrc* base, GstCaps* caps) {
     if (!gst_video_info_from_caps(&state.info, caps)) return FALSE;
     const int width = GST_VIDEO_INFO_WIDTH(&state.info), height = GST_VIDEO_INFO_HEIGHT(&state.info);
     if ((width != kWidth || height != kHeight) && !build(state, width, height).empty()) return FALSE;
-    if (state.settings.inset) state.map.emplace(drawn(state.house->plan()), vision::Size{width, height});
+    if (state.settings.inset)
+      state.map.emplace(drawn(state.house->plan(), state.settings.camera_height),
+                        vision::Size{width, height});
     return TRUE;
   });
 }

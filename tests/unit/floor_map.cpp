@@ -92,6 +92,20 @@ START_TEST(a_pillar_hides_what_is_behind_it) {
 }
 END_TEST
 
+START_TEST(the_camera_sees_over_low_furniture_and_not_over_high) {
+  FloorPlan with_cupboard = plan();
+  with_cupboard.furniture.push_back({3, 1.5, 3.4, 2.5});
+  FloorScene scene = standing();
+  Drawn low{FloorMap(with_cupboard, {650, 650})};
+  low.draw(scene);
+  ck_assert(low.is_seen(5, 2));
+  with_cupboard.high = {with_cupboard.furniture.back()};
+  Drawn high{FloorMap(with_cupboard, {650, 650})};
+  high.draw(scene);
+  ck_assert(high.is_seen(2.5, 2) && !high.is_seen(5, 2));
+}
+END_TEST
+
 START_TEST(people_are_red_where_the_camera_sees_them_and_grey_elsewhere) {
   Drawn drawn;
   const FloorScene::Person people[] = {{4, 2, true}, {10, 3.5, false}};
@@ -125,6 +139,7 @@ int main() {
       "floor map",
       {it_is_as_large_as_any_inset_or_is_none, rooms_and_doorways_are_bright_walls_dark_and_things_between,
        what_the_camera_sees_ends_at_walls_and_goes_on_through_doorways, a_pillar_hides_what_is_behind_it,
+       the_camera_sees_over_low_furniture_and_not_over_high,
        people_are_red_where_the_camera_sees_them_and_grey_elsewhere,
        the_robot_points_where_it_drives_and_leaves_its_way});
 }
