@@ -282,6 +282,23 @@ START_TEST(an_exposure_has_a_part_for_each_pixel_and_a_half_of_turning) {
 }
 END_TEST
 
+// The upper rows look beyond the zenith: at the ceiling, whatever the walls are.
+START_TEST(a_camera_that_looks_past_the_zenith_sees_the_ceiling_there) {
+  const auto upper = [](const std::string& wall) {
+    Lens lens;
+    lens.field_of_view = cerberus::sensing::radians(110), lens.noise = 0;
+    HouseCamera camera(plan_of("room hall 0 0 10 10 wall=" + wall + "\nlamp 5 5\n"), lens, 1);
+    const Pose up{5, 5, .8, 0, cerberus::sensing::radians(60)};
+    camera.expose(up, {});
+    std::vector<std::uint8_t> picture;
+    camera.develop(picture);
+    picture.resize(10 * 320);
+    return picture;
+  };
+  ck_assert(upper("brick") == upper("books"));
+}
+END_TEST
+
 START_TEST(a_lamp_that_is_switched_off_leaves_the_room_darker) {
   HouseCamera camera(plan_of(kHall), {}, 1);
   const auto mean = [&] {
@@ -305,5 +322,6 @@ int main() {
        the_box_follows_a_camera_that_pitches_and_rolls, who_stands_behind_something_is_seen_in_part,
        equal_seeds_give_equal_bytes, a_still_picture_changes_by_its_noise_alone, turning_blurs_upright_edges,
        edges_move_by_parts_of_a_pixel, an_exposure_has_a_part_for_each_pixel_and_a_half_of_turning,
+       a_camera_that_looks_past_the_zenith_sees_the_ceiling_there,
        a_lamp_that_is_switched_off_leaves_the_room_darker});
 }

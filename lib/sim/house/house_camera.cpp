@@ -107,7 +107,8 @@ void HouseCamera::add_up(const Turned& turned, double middle_x, double middle_y)
       double u = x, v = y;
       if (!level) {
         const double down = x * turned.sin_roll + y * turned.cos_roll;
-        const double scale = focal_ / (down * turned.sin_pitch + focal_ * turned.cos_pitch);
+        const double scale =
+            focal_ / std::max(down * turned.sin_pitch + focal_ * turned.cos_pitch, focal_ / 8);
         u = (x * turned.cos_roll - y * turned.sin_roll) * scale;
         v = (down * turned.cos_pitch - focal_ * turned.sin_pitch) * scale;
       }
