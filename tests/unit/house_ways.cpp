@@ -94,6 +94,13 @@ START_TEST(a_robot_sees_over_a_table_and_not_through_a_wall) {
 }
 END_TEST
 
+START_TEST(what_hangs_hides_nothing_below_it_and_people_pass_below_what_hangs_high) {
+  const Ways ways(plan_of("room a 0 0 6 6\nbox 1 2 4 .4 1.8 from=1.2\nbox 1 4 4 .4 2.6 from=2.1\n"), .3);
+  ck_assert(ways.sees({3, 1}, {3, 5}));
+  ck_assert(!ways.free({3, 2.2}) && ways.free({3, 4.2}));
+}
+END_TEST
+
 START_TEST(routes_are_read_as_they_are_written) {
   const auto robot = read_routes("at 1 2 90; go 3.5 2; turn -45; wait 1.5;", Mover::robot);
   const auto* one = std::get_if<std::vector<Route>>(&robot);
@@ -124,6 +131,9 @@ START_TEST(what_is_wrong_with_a_route_is_named) {
             "'go 1 1' should be at X Y [HEADING], first of all and only once");
   ck_assert(wrong_with("at 1 1; go 1", Mover::robot).find("' go 1' should be go X Y") == 0);
   ck_assert(wrong_with("at 1 1; go 1 1 9", Mover::person).find(".1 to 4") != std::string::npos);
+  ck_assert(wrong_with("at 1 1; go 1 1 3", Mover::person).empty());
+  ck_assert(wrong_with("at 1 1; go 1 1 3", Mover::robot).find(".05 to 1.5") != std::string::npos);
+  ck_assert(wrong_with("at 1 1; go 1 1 .05", Mover::robot).empty());
   ck_assert(!wrong_with("at 1 1; turn 90", Mover::person).empty());
   ck_assert(!wrong_with("at 1 1; gesture 1", Mover::robot).empty());
   ck_assert(!wrong_with("at 1 1; wait 0", Mover::robot).empty());
@@ -138,5 +148,6 @@ int main() {
       "house_ways",
       {a_way_goes_through_the_doorway_and_around_what_stands, nothing_is_free_within_the_clearance,
        no_way_leads_into_a_closed_room_or_a_wall, a_robot_sees_over_a_table_and_not_through_a_wall,
+       what_hangs_hides_nothing_below_it_and_people_pass_below_what_hangs_high,
        routes_are_read_as_they_are_written, what_is_wrong_with_a_route_is_named});
 }

@@ -10,7 +10,11 @@
 namespace cerberus::sim {
 namespace {
 
-constexpr double kSlowest = .1, kFastest = 4;  // metres a second
+struct Limits {
+  double slowest, fastest;  // metres a second
+  const char* text;
+};
+constexpr Limits kRobot{.05, 1.5, ".05 to 1.5"}, kPerson{.1, 4, ".1 to 4"};
 
 // The part before the next separator, which is taken off with it.
 std::string_view cut(std::string_view& text, char separator) {
@@ -61,9 +65,10 @@ std::string add(Route& route, bool first, const std::vector<std::string_view>& w
     return {};
   }
   if (what == "go") {
+    const Limits& limits = mover == Mover::robot ? kRobot : kPerson;
     const auto to = numbers(words, 2, 3);
-    if (!to || (to->size() > 2 && ((*to)[2] < kSlowest || (*to)[2] > kFastest)))
-      return "go X Y [SPEED], .1 to 4 metres a second";
+    if (!to || (to->size() > 2 && ((*to)[2] < limits.slowest || (*to)[2] > limits.fastest)))
+      return "go X Y [SPEED], " + std::string(limits.text) + " metres a second";
     step.kind = RouteStep::go;
     step.to = {(*to)[0], (*to)[1]};
     step.speed = to->size() > 2 ? (*to)[2] : 0;

@@ -12,6 +12,7 @@ namespace cerberus::sim {
 namespace {
 
 constexpr double kSensors = .8;  // metres: the height of the paper's sensors
+constexpr double kTallest = 2;   // metres: people are at most 1.9 m tall, and walk below what hangs higher
 
 // Of a place to what stands there; 0: inside it.
 double distance(const Rectangle& area, double x, double y) {
@@ -31,10 +32,11 @@ Ways::Ways(const FloorPlan& plan, double clearance) {
   columns_ = int(std::ceil((right - left_) / kCell)), rows_ = int(std::ceil((bottom - top_) / kCell));
   const std::size_t cells = std::size_t(columns_) * rows_;
   free_.resize(cells), open_.resize(cells);
-  const auto blocked = [&](double x, double y, double near, double above) {
-    return std::ranges::any_of(
-               plan.boxes,
-               [&](const Furniture& b) { return b.height > above && distance(b.area, x, y) <= near; }) ||
+  const auto blocked = [&](double x, double y, double near, double above, double below) {
+    return std::ranges::any_of(plan.boxes,
+                               [&](const Furniture& b) {
+                                 return b.height > above && b.from < below && distance(b.area, x, y) <= near;
+                               }) ||
            std::ranges::any_of(plan.pillars, [&](const Pillar& p) {
              return std::hypot(p.x - x, p.y - y) <= p.radius + near;
            });
@@ -51,8 +53,8 @@ Ways::Ways(const FloorPlan& plan, double clearance) {
   for (std::size_t i = 0; i < cells; ++i) {
     const auto [x, y] = middle(int(i));
     if (plan.space_at(x, y) < 0) continue;
-    open_[i] = !blocked(x, y, 0, kSensors);
-    free_[i] = !blocked(x, y, clearance, 0) && !walled(x, y);
+    open_[i] = !blocked(x, y, 0, kSensors, kSensors);
+    free_[i] = !blocked(x, y, clearance, 0, kTallest) && !walled(x, y);
   }
 }
 
