@@ -26,9 +26,9 @@ PirSensor::Sight PirSensor::sight_of(const Warmth& thing) const {
 }
 
 double threshold_for(const PirTraits& traits, double range) {
-  constexpr double kWidth = .48, kContrast = 6, kSpeed = 1;
-  const double zone = traits.field / traits.zones, width = 2 * std::atan(kWidth / 2 / range);
-  return kContrast * std::min(1., width / zone) * passed(traits, kSpeed / range / zone);
+  constexpr double kSpeed = 1;
+  const double zone = traits.field / traits.zones, width = 2 * std::atan(kPersonWidth / 2 / range);
+  return kPersonContrast * std::min(1., width / zone) * passed(traits, kSpeed / range / zone);
 }
 
 PirTraits pir_traits(const sensing::PirPreset* module, double field, double range) {

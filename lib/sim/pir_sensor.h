@@ -27,6 +27,9 @@ struct PirReach {
 // Zones A and C of the paper's Figure 1.
 inline constexpr std::array<PirReach, 2> kPaperReach{{{12, 1.5}, {3, 2.5}}};
 
+// A person before a wall, as sensors see them: metres and kelvin.
+inline constexpr double kPersonWidth = .48, kPersonContrast = 6;
+
 struct PirTraits {
   double field = sensing::radians(110);
   int zones = 14;             // of about 8 degrees

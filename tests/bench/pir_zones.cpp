@@ -21,7 +21,6 @@ using std::chrono::milliseconds;
 namespace {
 
 constexpr double kField = 120, kRange = 12;  // degrees, metres: of Table 1
-constexpr double kWidth = .48, kWarm = 6;    // metres, kelvin: of lib/sim/pir_sensor.h
 constexpr auto kStep = milliseconds(10);
 
 const sim::PirTraits& traits() {
@@ -46,8 +45,8 @@ std::optional<double> first_detection(const Walk& walk) {
   const double lasts = (walk.to - walk.from) / rate;
   for (sim::Time now{}; motion::seconds(now) < lasts + traits().response; now += kStep) {
     const double bearing = walk.from + rate * std::min(motion::seconds(now), lasts);
-    const sim::Warmth person{sensing::radians(bearing), 2 * std::atan(kWidth / 2 / walk.metres), kWarm,
-                             walk.metres, walk.low};
+    const sim::Warmth person{sensing::radians(bearing), 2 * std::atan(sim::kPersonWidth / 2 / walk.metres),
+                             sim::kPersonContrast, walk.metres, walk.low};
     sensor.elapse(now, std::span(&person, 1));
     if (sensor.output()) return walk.from + rate * std::max(0., motion::seconds(now) - traits().response);
   }

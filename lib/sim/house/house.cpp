@@ -13,8 +13,6 @@ constexpr Time kStep = std::chrono::milliseconds(10);  // of the sensors, and of
 constexpr double kClearance = .35;                     // metres: ways from walls
 constexpr double kLeast = .24;                         // metres: people from walls, half of a body's width
 constexpr double kApart = 1;                           // metres: people from each other and from the robot
-constexpr double kWarm = 6;    // kelvin: a person before a wall, as in lib/sim/pir_sensor.h
-constexpr double kWide = .48;  // metres
 
 // Numbers of one seed, the same on every machine (the distributions of the standard library are not).
 class Dice {
@@ -365,7 +363,7 @@ void House::sense(Time now) {
                      hidden ? 0 : 2 * std::atan(width / 2 / away), contrast, away});
   };
   for (const Person& person : people_)
-    add({person.walker.stance().x, person.walker.stance().y}, kWide, kWarm);
+    add({person.walker.stance().x, person.walker.stance().y}, kPersonWidth, kPersonContrast);
   for (const Thing& thing : things_) add(thing.at, thing.width, thing.contrast);
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
     const bool before = sensors_[i].output();
