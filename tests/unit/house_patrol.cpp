@@ -11,6 +11,7 @@
 #include <iterator>
 #include <set>
 #include <string>
+#include <tuple>
 
 #include "support/suite.h"
 
@@ -336,6 +337,36 @@ START_TEST(who_steps_aside_walks_there) {
 }
 END_TEST
 
+START_TEST(lamps_are_switched_at_their_times) {
+  const auto brightness = [](const std::string& lamp) {
+    HouseSettings settings = crossing("at 1 1; wait 60");
+    settings.path = routes("at 6 5; wait 60", Mover::robot);
+    const auto house = built(plan_of("room hall 0 0 12 10\n" + lamp), settings);
+    std::vector<double> means;
+    std::vector<std::uint8_t> picture;
+    for (int second = 0; second < 8; ++second) {
+      house->take(second * 1s, kAhead, picture);
+      double sum = 0;
+      for (int i = 0; i < 32 * 24; ++i) sum += picture[i];
+      means.push_back(sum / (32 * 24));
+    }
+    return means;
+  };
+  const double lit = brightness("lamp 9 5")[0];
+  for (const auto& [lamp, dark_from, dark_to] : {std::tuple{"lamp 9 5", 99, 99},
+                                                 {"lamp 9 5 off=2 on=5", 2, 5},
+                                                 {"lamp 9 5 off=3", 3, 99},
+                                                 {"lamp 9 5 on=4", 0, 4}}) {
+    const auto means = brightness(lamp);
+    for (int second = 0; second < 8; ++second) {
+      const bool dark = second >= dark_from && second < dark_to;
+      ck_assert_msg(dark == (means[second] < .8 * lit), "%s, %d s: %.0f of %.0f", lamp, second, means[second],
+                    lit);
+    }
+  }
+}
+END_TEST
+
 START_TEST(settings_that_cannot_be_are_named) {
   HouseSettings settings = small();
   settings.path = routes("at 1 5; go 40 5", Mover::robot);
@@ -361,13 +392,14 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "house_patrol", {a_robot_without_a_path_patrols_every_room_and_meets_no_wall,
-                       people_go_from_room_to_room_and_keep_off_walls_and_each_other,
-                       one_seed_gives_the_same_pictures_and_another_gives_others,
-                       the_truth_is_where_the_walk_leads, a_gaze_to_the_right_moves_the_person_to_the_left,
-                       a_sensor_is_triggered_by_who_crosses_its_field_and_not_through_a_wall,
-                       a_robot_shakes_while_it_moves_and_a_hand_always, a_robot_waits_for_a_person_in_its_way,
-                       who_gets_no_further_turns_back_and_comes_again,
-                       nobody_and_no_robot_is_stuck_in_the_office, a_place_beside_somebody_counts_as_reached,
-                       who_steps_aside_walks_there, settings_that_cannot_be_are_named});
+      "house_patrol",
+      {a_robot_without_a_path_patrols_every_room_and_meets_no_wall,
+       people_go_from_room_to_room_and_keep_off_walls_and_each_other,
+       one_seed_gives_the_same_pictures_and_another_gives_others, the_truth_is_where_the_walk_leads,
+       a_gaze_to_the_right_moves_the_person_to_the_left,
+       a_sensor_is_triggered_by_who_crosses_its_field_and_not_through_a_wall,
+       a_robot_shakes_while_it_moves_and_a_hand_always, a_robot_waits_for_a_person_in_its_way,
+       who_gets_no_further_turns_back_and_comes_again, nobody_and_no_robot_is_stuck_in_the_office,
+       a_place_beside_somebody_counts_as_reached, who_steps_aside_walks_there,
+       lamps_are_switched_at_their_times, settings_that_cannot_be_are_named});
 }

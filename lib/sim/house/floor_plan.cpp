@@ -227,6 +227,7 @@ class Reader {
     Lamp lamp;
     lamp.x = line.number("x"), lamp.y = line.number("y");
     lamp.strength = line.positive("strength", lamp.strength);
+    lamp.off_at = line.positive("off", lamp.off_at), lamp.on_at = line.positive("on", lamp.on_at);
     if (!line.finish()) return;
     lamp.space = around({lamp.x, lamp.y, lamp.x, lamp.y}, line);
     if (lamp.space >= 0) plan.lamps.push_back(lamp);

@@ -9,11 +9,12 @@
 //   doorway NAME NAME at=M [width=.9] [height=2.05] [wall=T] [floor=T]           through the wall between both; at: x or y
 //   box X Y WIDTH LENGTH HEIGHT [from=0] [side=T] [top=T]                        furniture; from: above the floor
 //   pillar X Y RADIUS [wall=T]                                                  up to the ceiling
-//   lamp X Y [strength=1]                                                       below the ceiling, on
+//   lamp X Y [strength=1] [off=S] [on=S]                                        below the ceiling; switched at these seconds
 //
 // T: plaster, brick, wood, carpet, tiles, concrete, panels, books, cloth, metal.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -62,9 +63,14 @@ struct Pillar {
 };
 
 struct Lamp {
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
   double x = 0, y = 0, strength = 1;
   int space = 0;
   bool on = true;
+  double off_at = kNever, on_at = kNever;  // seconds; one that is first switched on is dark before
+  bool lit(double seconds) const {
+    return off_at <= on_at ? seconds < off_at || seconds >= on_at : seconds >= on_at && seconds < off_at;
+  }
 };
 
 struct FloorPlan {

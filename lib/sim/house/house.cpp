@@ -407,6 +407,10 @@ Pose House::pose(Time now, const Gaze& gaze) const {
 
 void House::take(Time time, const std::function<Gaze(Time)>& gaze, std::vector<std::uint8_t>& i420) {
   edges_.clear();
+  for (std::size_t i = 0; i < camera_.plan().lamps.size(); ++i) {
+    const Lamp& lamp = camera_.plan().lamps[i];
+    if (const bool lit = lamp.lit(motion::seconds(time)); lit != lamp.on) camera_.switch_lamp(int(i), lit);
+  }
   const Time begin = std::max(time - settings_.exposure, stepped_);
   elapse(begin);
   const Pose first = pose(begin, gaze(begin));
