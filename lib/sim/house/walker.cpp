@@ -134,10 +134,8 @@ void Walker::step() {
     const double share = more > most ? most / more : 1;
     velocity_.x += share * x, velocity_.y += share * y;
   }
-  if (now.kind == Instruction::face) towards = std::atan2(now.y - stance_.y, now.x - stance_.x);
   stance_.speed = std::hypot(velocity_.x, velocity_.y);
-  if (now.kind != Instruction::face && stance_.speed > kTurnsAbove)
-    towards = std::atan2(velocity_.y, velocity_.x);
+  if (stance_.speed > kTurnsAbove) towards = std::atan2(velocity_.y, velocity_.x);
   const double turn = sensing::wrap(towards - stance_.heading), most_turn = traits_.turn_rate * kStep;
   stance_.heading = sensing::wrap(stance_.heading + std::clamp(turn, -most_turn, most_turn));
   stance_.x += velocity_.x * kStep, stance_.y += velocity_.y * kStep;
@@ -152,9 +150,7 @@ void Walker::step() {
   stance_.gesture += std::clamp(hand - stance_.gesture, -raise, raise);
   stance_.wave += kWave * kStep;
 
-  const bool waits = now.kind == Instruction::stand || now.kind == Instruction::gesture;
-  if (waits && in_instruction_ >= now.seconds) next();
-  if (now.kind == Instruction::face && std::abs(turn) < most_turn) next();
+  if (now.kind != Instruction::go && in_instruction_ >= now.seconds) next();
 }
 
 }  // namespace cerberus::sim

@@ -14,9 +14,9 @@ namespace cerberus::sim {
 using motion::Time;
 
 struct Instruction {
-  enum Kind { go, stand, gesture, face };
+  enum Kind { go, stand, gesture };
   Kind kind = stand;
-  double x = 0, y = 0;  // go: to here; face: towards it
+  double x = 0, y = 0;  // go: to here
   double speed = 1.2;   // go: .1 to 4 a second
   double seconds = 1;   // stand, gesture
   bool stops = false;   // go: comes to rest there
