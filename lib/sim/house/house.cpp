@@ -252,19 +252,24 @@ std::variant<std::unique_ptr<House>, std::string> House::build(FloorPlan plan,
   return house;
 }
 
-// A person who would walk into a wall, a thing, somebody or the robot slides along it.
+// A person who would walk into somebody, the robot, a wall or a thing slides along it.
 void House::keep_off(Person& person, const Spot& before) const {
   constexpr double kBody = .4;  // metres: a person beside another one, or beside the robot
-  const Spot now{person.walker.stance().x, person.walker.stance().y};
-  const auto meets = [&](const Spot& place, double x, double y) {
-    return std::hypot(place.x - x, place.y - y) < std::min(kBody, std::hypot(before.x - x, before.y - y));
+  Walker& walker = person.walker;
+  const auto touch = [&](const Spot& other) {
+    const Spot away{walker.stance().x - other.x, walker.stance().y - other.y};
+    const double here = std::hypot(away.x, away.y);
+    const double least = std::min(kBody, std::hypot(before.x - other.x, before.y - other.y));
+    if (here < least && here > 0)
+      walker.touch({other.x + least / here * away.x, other.y + least / here * away.y},
+                   {away.x / here, away.y / here});
   };
+  for (const Person& other : people_)
+    if (&other != &person) touch({other.walker.stance().x, other.walker.stance().y});
+  touch({base_.x(), base_.y()});
+  const Spot now{walker.stance().x, walker.stance().y};
   for (const Spot& allowed : {now, Spot{before.x, now.y}, Spot{now.x, before.y}, before})
-    if (room_to_step_.free(allowed) && !meets(allowed, base_.x(), base_.y()) &&
-        std::ranges::none_of(people_, [&](const Person& other) {
-          return &other != &person && meets(allowed, other.walker.stance().x, other.walker.stance().y);
-        }))
-      return person.walker.stop_at(allowed);
+    if (room_to_step_.free(allowed)) return walker.stop_at(allowed);
 }
 
 // Those who come near each other, or near the robot, slow down and go past to the right.

@@ -95,6 +95,13 @@ void Walker::stop_at(const Spot& place) {
   stance_.speed = std::hypot(velocity_.x, velocity_.y);
 }
 
+void Walker::touch(const Spot& place, const Spot& away) {
+  const double into = std::min(velocity_.x * away.x + velocity_.y * away.y, 0.);
+  velocity_.x -= into * away.x, velocity_.y -= into * away.y;
+  stance_.x = place.x, stance_.y = place.y;
+  stance_.speed = std::hypot(velocity_.x, velocity_.y);
+}
+
 // With which it passes a place: slower where its way bends.
 double Walker::corner_speed(const Instruction& to) const {
   constexpr double kBend = .5, kSlow = .7;  // radians; metres a second

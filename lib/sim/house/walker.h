@@ -47,6 +47,8 @@ class Walker {
   void give_way(const Spot& velocity) { aside_ = velocity; }
   // A wall or a thing stops it at a place; it keeps its velocity along what it touches.
   void stop_at(const Spot& place);
+  // It touches somebody and is at a place; away: the direction, of length 1, against which it moves no further.
+  void touch(const Spot& place, const Spot& away);
   const Instruction& now() const { return detour_.empty() ? instructions_[current_] : detour_.front(); }
   // What comes after now().
   const Instruction& then() const;
