@@ -69,7 +69,7 @@ struct Fuser::State {
     Follower follower;  // the camera's part
 
     // Sensors.
-    SensorBits fired = 0, invalid = 0, doubtful = 0;
+    SensorBits fired = 0, onsets = 0, invalid = 0, doubtful = 0;
     std::array<PulseDoubt, kMaxSensors> doubts;
     std::array<int, kMaxSensors> order{};  // the higher, the later it fired
     int fire_count = 0;
@@ -126,10 +126,10 @@ void Fuser::State::read_sensors(const Input& input) {
   }
 
   const auto fired = static_cast<SensorBits>(ones & ~m.doubtful);
-  const auto rising = static_cast<SensorBits>(fired & ~m.fired);
-  if (rising != 0) ++m.fire_count;
+  m.onsets = static_cast<SensorBits>(fired & ~m.fired);
+  if (m.onsets != 0) ++m.fire_count;
   for (int i = 0; i < known; ++i)
-    if (rising >> i & 1) m.order[static_cast<unsigned>(i)] = m.fire_count;
+    if (m.onsets >> i & 1) m.order[static_cast<unsigned>(i)] = m.fire_count;
   m.fired = fired;
 }
 
@@ -279,6 +279,7 @@ Decision Fuser::State::decide(const Input& input) {
   Decision next;
   next.pan = input.pan;
   next.fired = m.fired;
+  next.begun = m.onsets;
   next.doubtful = m.doubtful;
   next.invalid = m.invalid;
   next.camera_found = m.follower.found(options.camera_hold, input.time);

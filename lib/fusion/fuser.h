@@ -74,6 +74,7 @@ struct Decision {
   bool limited = false;   // the wanted place lies (partly) beyond the pan limits
   bool camera_found = false;
   SensorBits fired = 0;  // sensors that detect and count
+  SensorBits begun = 0;  // those of them that did not in the last decision
   SensorBits doubtful =
       0;  // read 1 perhaps because of the base's own motion (sensing/own_motion.h): not counted
   SensorBits invalid = 0;  // read 2: not counted

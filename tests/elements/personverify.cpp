@@ -215,6 +215,27 @@ GST_START_TEST(the_first_look_is_put_off_by_the_phase) {
 }
 GST_END_TEST
 
+// Looks are two seconds apart: that of the onset at frame 20 comes between, and its result is there one frame later.
+GST_START_TEST(an_onset_is_looked_at_at_once) {
+  for (const bool onset : {false, true}) {
+    Verifier verifier("rate=0.5");
+    for (int n = 0; n < 30; ++n) {
+      const bool there = n >= 10;
+      if (n == 20 && onset)
+        gst_harness_push_upstream_event(
+            verifier.h.get(),
+            gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, gst_structure_new_empty("cerberus-onset")));
+      GstBuffer* in = there ? scene(n, {140}) : scene(n, {});
+      if (there) add(in, person_track(7, 140));
+      GstBuffer* out = verifier.through(in);
+      g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(out);
+      fail_unless(holds_person(regions) == (onset && n >= 21), "frame %d", n);
+      gst_buffer_unref(out);
+    }
+  }
+}
+GST_END_TEST
+
 // Live, the result comes when it does: every frame leaves at once, and one of them has it.
 GST_START_TEST(live_no_frame_waits_and_the_result_comes_later) {
   Verifier verifier("", true);
@@ -547,6 +568,7 @@ Suite* personverify_suite() {
   tcase_add_test(tests, a_result_counts_40_ms_of_running_time_after_its_frame);
   tcase_add_test(tests, two_runs_give_the_same_regions);
   tcase_add_test(tests, the_first_look_is_put_off_by_the_phase);
+  tcase_add_test(tests, an_onset_is_looked_at_at_once);
   tcase_add_test(tests, live_no_frame_waits_and_the_result_comes_later);
   tcase_add_test(tests, live_no_frame_waits_at_a_cut_during_a_look);
   tcase_add_test(tests, live_after_a_cut_the_detector_looks_on);

@@ -273,6 +273,42 @@ GST_START_TEST(a_pose_of_another_head_is_forwarded_and_not_used) {
 }
 GST_END_TEST
 
+namespace {
+
+// The onsets that have gone upstream since the last call.
+int onsets(Rig& rig) {
+  int count = 0;
+  while (GstEvent* event = gst_harness_try_pull_upstream_event(rig.video)) {
+    count += gst_event_has_name(event, "cerberus-onset");
+    gst_event_unref(event);
+  }
+  return count;
+}
+
+}  // namespace
+
+// The lens sees 30 degrees to either side, the sensors (ahead, left, right) 60; live and not.
+GST_START_TEST(a_sensor_that_begins_to_detect_in_the_picture_is_told_upstream_once) {
+  for (const bool live : {true, false}) {
+    Rig rig(live);
+    rig.add_pir(kPaper, "pir_%u", live);
+    const auto after = [&](int k, const Bytes& values, double pan) {
+      const GstClockTime time = static_cast<GstClockTime>(k) * 40 * kMs;
+      rig.read(time, values);
+      if (!live) rig.read(time + 20 * kMs, values);
+      rig.show(frame_at(time, pan));
+      return onsets(rig);
+    };
+    fail_unless_equals_int(after(0, {0, 0, 0}, 0), 0);
+    fail_unless_equals_int(after(1, {1, 0, 0}, 0), 1);
+    fail_unless_equals_int(after(2, {1, 0, 0}, 0), 0);   // it goes on
+    fail_unless_equals_int(after(3, {1, 1, 0}, 0), 0);   // elsewhere
+    fail_unless_equals_int(after(4, {1, 1, 1}, 60), 1);  // from the middle of the picture on
+    fail_unless_equals_int(after(5, {2, 0, 0}, 0), 0);   // invalid
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(readings_while_the_robot_turns_are_doubtful) {
   Rig rig(true, "lost-after=0");
   rig.add_pir();
@@ -420,6 +456,7 @@ static Suite* pirfusion_suite() {
   tcase_add_test(tc, pan_comes_from_the_frame_else_from_the_events_that_passed);
   tcase_add_test(tc, a_repeated_frame_is_decided_with_the_pose_of_its_picture_and_the_newest_readings);
   tcase_add_test(tc, a_pose_of_another_head_is_forwarded_and_not_used);
+  tcase_add_test(tc, a_sensor_that_begins_to_detect_in_the_picture_is_told_upstream_once);
   tcase_add_test(tc, readings_while_the_robot_turns_are_doubtful);
   tcase_add_test(tc, a_turning_that_the_camera_saw_makes_readings_doubtful);
   tcase_add_test(tc, a_robot_that_drives_makes_readings_doubtful);

@@ -510,6 +510,25 @@ START_TEST(who_is_shown_once_a_second_is_published_all_the_time) {
 }
 END_TEST
 
+// Looks come every two seconds, and one more right behind the second.
+START_TEST(a_look_in_between_makes_nobody_vanish_until_the_next) {
+  Scene scene;
+  scene.calm = 0.4, scene.still = false;
+  constexpr int kRare = 48, kBetween = kRare + 6;
+  int before = 0;
+  for (int n = 0; n < 3 * kRare; ++n) {
+    const int since = n - 1 - before;
+    const bool due = n > 0 && ((n - 1) % kRare == 0 || n - 1 == kBetween);
+    std::optional<std::vector<PersonDetection>> late;
+    if (due) late = {{body_at(200), kSure}};
+    const auto found = scene.frame({200}, {}, late, since * kSeconds);
+    if (due) before = n - 1;
+    if (n % kRare == 0 || n == kBetween) scene.look();
+    if (n > kBetween) ck_assert_msg(found.size() == 1, "frame %d", n);
+  }
+}
+END_TEST
+
 START_TEST(a_look_counts_however_late_it_is) {
   Scene scene;
   scene.calm = 0.4, scene.still = false;
@@ -761,6 +780,7 @@ int main() {
                     looks_that_cannot_see_a_person_say_nothing,
                     who_goes_away_from_the_camera_stays_a_person,
                     who_is_shown_once_a_second_is_published_all_the_time,
+                    a_look_in_between_makes_nobody_vanish_until_the_next,
                     a_look_counts_however_late_it_is,
                     a_look_at_the_very_frame_shows_where_the_body_is_now,
                     who_stops_and_is_looked_at_keeps_the_identity_when_motion_ends,

@@ -40,7 +40,7 @@ void EvidenceTracker::reset() {
 void EvidenceTracker::drop_tracks() {
   tracks_.clear(), results_.clear();
   number_ = look_number_ = 0;
-  period_ = 0;
+  period_ = last_seconds_ = 0;
   looks_enclose_ = false;
   camera_stood_ = p_.moving_time;
 }
@@ -303,7 +303,8 @@ bool EvidenceTracker::should_be_seen(const EvidenceTrack& t) const {
 // What the look says of tracks that it does not show, and what their own motion says.
 void EvidenceTracker::judge_look(const EvidenceLook& look) {
   const bool calm = frame_.calm >= p_.calm;
-  period_ = look.seconds;
+  period_ = std::max(look.seconds, last_seconds_);
+  last_seconds_ = look.seconds;
   for (EvidenceTrack& t : tracks_) {
     const bool moving = inside_moves(t.box(), calm);
     t.moved = t.moved || moving;

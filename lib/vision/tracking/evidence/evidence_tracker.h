@@ -121,10 +121,12 @@ class EvidenceTracker {
   int present_ = 0;
   std::uint64_t number_ = 0, look_number_ = 0;
   Transform motion_, since_look_;  // reduced pixels
-  double period_ = 0;              // s from look to look
-  bool looks_enclose_ = false;     // EvidenceLook::encloses of the last one
-  double camera_stood_ = 0;        // s
-  std::uint32_t last_id_ = 0;      // that has been given
+  double last_seconds_ = 0;        // from the last look but one to the last
+  double period_ =
+      0;  // s from look to look: of the last two the longer, as one may have come between two others
+  bool looks_enclose_ = false;  // EvidenceLook::encloses of the last one
+  double camera_stood_ = 0;     // s
+  std::uint32_t last_id_ = 0;   // that has been given
 };
 
 }  // namespace cerberus::vision
