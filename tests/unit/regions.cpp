@@ -551,6 +551,24 @@ START_TEST(blobs_that_never_walk_teach_no_height) {
 }
 END_TEST
 
+// Two people arm in arm, of whom the picture shows 100 rows: all, or what is not cut off below.
+START_TEST(people_whom_the_picture_cuts_off_below_teach_no_height) {
+  for (const double height : {140.0, 100.0}) {
+    RegionFinder finder = settled();
+    Picture picture;
+    for (int k = 0; k < 40; ++k) {
+      picture.clear();
+      for (const double beside : {0.0, .34 * height})
+        tests::draw_body(picture.mask.view(), 50 + 4 * k + beside, height > 100 ? 280 : 228, height);
+      picture.find(finder);
+    }
+    picture.clear();
+    for (const double beside : {0.0, 34.0}) tests::draw_body(picture.mask.view(), 120 + beside, 228, 100);
+    ck_assert_uint_eq(picture.find(finder).size(), height > 100 ? 1 : 2);
+  }
+}
+END_TEST
+
 // A walker is a sample of the height prior from its third frame on, and the prior answers from the tenth sample on: in
 // the twelfth frame the walker is known to be as tall as a person. 37 pixels tall: too small for the shape of a head.
 START_TEST(a_walker_teaches_its_height_from_the_third_frame_on) {
@@ -727,6 +745,7 @@ int main() {
                   two_people_are_two_where_a_car_left_a_frame_before_the_last,
                   a_dog_among_people_is_a_small_region,
                   blobs_that_never_walk_teach_no_height,
+                  people_whom_the_picture_cuts_off_below_teach_no_height,
                   a_walker_teaches_its_height_from_the_third_frame_on,
                   people_off_and_reset_give_plain_components_again,
                   the_learnt_heights_follow_a_tilting_camera,

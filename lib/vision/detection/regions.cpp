@@ -70,7 +70,7 @@ struct RegionFinder::State {
   void group_components();
   void explain(int group);
   void explain_unknown(int group, const Bounds& window);
-  double walked(const Box& body);
+  double walked(const Box& body, const Bounds& window);
   double changed(const Box& body) const;
   void add_plain(std::size_t component, RegionKind kind = RegionKind::thing);
   RegionKind kind_of(const Component& unexplained) const;
@@ -237,11 +237,12 @@ void RegionFinder::State::add_people(int g, const Bounds& window, std::span<cons
 
 // Records a body of this frame. Returns how far it has been from its first place, in heights of the body, its head free
 // frame after frame; 0: it stands, or its head is hidden. It teaches its height by every stride, as a walker does: where
-// people are never alone, and where the line of the heights is steeper than expected.
-double RegionFinder::State::walked(const Box& body) {
+// people are never alone, and where the line of the heights is steeper than expected. window: of its blob. Where the picture
+// cuts that off below, the height is not known.
+double RegionFinder::State::walked(const Box& body, const Bounds& window) {
   if (!has_free_head(moving.view(), size, body, parameters.head)) return 0;
   const WalkingBodies::Walk walk = bodies.add(body, changed(body) >= parameters.regions.stirs);
-  if (walk.goes_on) prior.learn(body.bottom(), body.height, body.height);
+  if (walk.goes_on && window.bottom < size.height) prior.learn(body.bottom(), body.height, body.height);
   return walk.farthest;
 }
 
@@ -267,7 +268,7 @@ void RegionFinder::State::explain_unknown(int g, const Bounds& window) {
   const auto found = people.find(moving.view(), window, prior);
   std::array<Person, PeopleFinder::kMostPeople> persons;
   const auto end = std::ranges::copy_if(found, persons.begin(), [&](const Person& person) {
-                     return walked(person.box) > p.walked;
+                     return walked(person.box, window) > p.walked;
                    }).out;
   const std::span<const Person> walking(persons.begin(), end);
   const double rest = unexplained(window, found);
@@ -317,7 +318,7 @@ void RegionFinder::State::explain(int g) {
     const Person person{{middle - width / 2, whole.y, width, whole.height}, 0};
     return add_people(g, window, {&person, 1});
   }
-  for (const Person& person : found) walked(person.box);
+  for (const Person& person : found) walked(person.box, window);
   const bool alone = found.size() == 1;
   // A person who lunges or bends: upright bodies do not explain the blob, which is no higher than one. Or several people.
   if (alone && members == 1 && window.height() < p.usual_most * expected) {
