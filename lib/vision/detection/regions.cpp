@@ -238,11 +238,13 @@ void RegionFinder::State::add_people(int g, const Bounds& window, std::span<cons
 // Records a body of this frame. Returns how far it has been from its first place, in heights of the body, its head free
 // frame after frame; 0: it stands, or its head is hidden. It teaches its height by every stride, as a walker does: where
 // people are never alone, and where the line of the heights is steeper than expected. window: of its blob. Where the picture
-// cuts that off below, the height is not known.
+// cuts off its feet, its height is not known.
 double RegionFinder::State::walked(const Box& body, const Bounds& window) {
   if (!has_free_head(moving.view(), size, body, parameters.head)) return 0;
   const WalkingBodies::Walk walk = bodies.add(body, changed(body) >= parameters.regions.stirs);
-  if (walk.goes_on && window.bottom < size.height) prior.learn(body.bottom(), body.height, body.height);
+  const bool cut =
+      window.bottom == size.height && body.bottom() > size.height - parameters.regions.feet * body.height;
+  if (walk.goes_on && !cut) prior.learn(body.bottom(), body.height, body.height);
   return walk.farthest;
 }
 
