@@ -69,7 +69,7 @@ struct Fuser::State {
     Follower follower;  // the camera's part
 
     // Sensors.
-    SensorBits fired = 0, onsets = 0, invalid = 0, doubtful = 0;
+    SensorBits fired = 0, invalid = 0, doubtful = 0;
     std::array<PulseDoubt, kMaxSensors> doubts;
     std::array<int, kMaxSensors> order{};  // the higher, the later it fired
     int fire_count = 0;
@@ -94,7 +94,9 @@ struct Fuser::State {
   Decision decision;
   std::string old_name;  // name of the decision's rule after its table was replaced
 
-  void read_sensors(const Input& input);
+  SensorBits read_sensors(const Input& input);
+  double lens(const Input& input) const;
+  bool cover_view(SensorBits sensors, const Input& input) const;
   Decision decide(const Input& input);
   Decision complete(const Input& input, Decision next);
   Decision by_table(const Input& input, Decision next);
@@ -103,7 +105,8 @@ struct Fuser::State {
   void watch_sweep(const Input& input);
 };
 
-void Fuser::State::read_sensors(const Input& input) {
+// Returns the sensors that begin to detect.
+SensorBits Fuser::State::read_sensors(const Input& input) {
   Memory& m = memory;
   const int known =
       std::clamp(options.rules == RuleSet::table ? table.sensors : geometry.count(), 0, kMaxSensors);
@@ -126,11 +129,29 @@ void Fuser::State::read_sensors(const Input& input) {
   }
 
   const auto fired = static_cast<SensorBits>(ones & ~m.doubtful);
-  m.onsets = static_cast<SensorBits>(fired & ~m.fired);
-  if (m.onsets != 0) ++m.fire_count;
+  const auto rising = static_cast<SensorBits>(fired & ~m.fired);
+  if (rising != 0) ++m.fire_count;
   for (int i = 0; i < known; ++i)
-    if (m.onsets >> i & 1) m.order[static_cast<unsigned>(i)] = m.fire_count;
+    if (rising >> i & 1) m.order[static_cast<unsigned>(i)] = m.fire_count;
   m.fired = fired;
+  return rising;
+}
+
+double Fuser::State::lens(const Input& input) const {
+  return input.lens > 0 && input.lens < std::numbers::pi ? input.lens : options.lens;
+}
+
+// Whether one of the sensors covers a part of the picture. Of an unknown pan the camera looks ahead, an unknown lens sees all.
+bool Fuser::State::cover_view(SensorBits sensors, const Input& input) const {
+  const double view = lens(input), pan = std::isfinite(input.pan) ? input.pan : 0;
+  if (view == 0) return sensors != 0;
+  for (int i = 0; i < kMaxSensors; ++i) {
+    if (!(sensors & bit(i))) continue;
+    if (i >= geometry.count() ||
+        std::abs(sensing::wrap(geometry.bearing(i) - pan)) < (geometry.field_of_view(i) + view) / 2)
+      return true;
+  }
+  return false;
 }
 
 void Fuser::State::look_at(int place) {
@@ -164,7 +185,7 @@ Decision Fuser::State::complete(const Input& input, Decision next) {
     next.rule_name = name;
     return next;
   };
-  const double lens = input.lens > 0 && input.lens < std::numbers::pi ? input.lens : options.lens;
+  const double lens = this->lens(input);
   m.search.see(input.sensor_time, input.pan, lens, input.base_yaw_rate);
   if (next.camera_found) {
     forget_places();
@@ -273,13 +294,13 @@ Decision Fuser::State::by_table(const Input& input, Decision next) {
 
 Decision Fuser::State::decide(const Input& input) {
   Memory& m = memory;
-  read_sensors(input);
+  const SensorBits onsets = read_sensors(input);
   m.follower.watch(input.tracks, input.time, options.choice, options.hold_stopped);
 
   Decision next;
   next.pan = input.pan;
   next.fired = m.fired;
-  next.begun = m.onsets;
+  next.onset_in_view = cover_view(onsets, input);
   next.doubtful = m.doubtful;
   next.invalid = m.invalid;
   next.camera_found = m.follower.found(options.camera_hold, input.time);

@@ -73,8 +73,8 @@ struct Decision {
   double pan = kUnknown;  // as used
   bool limited = false;   // the wanted place lies (partly) beyond the pan limits
   bool camera_found = false;
-  SensorBits fired = 0;  // sensors that detect and count
-  SensorBits begun = 0;  // those of them that did not in the last decision
+  SensorBits fired = 0;        // sensors that detect and count
+  bool onset_in_view = false;  // one of them begins to detect, and covers a part of the picture
   SensorBits doubtful =
       0;  // read 1 perhaps because of the base's own motion (sensing/own_motion.h): not counted
   SensorBits invalid = 0;  // read 2: not counted

@@ -25,10 +25,11 @@
  * Boxes of persons that any other element upstream has found are such a witness, too: #GstVideoRegionOfInterestMeta, and from
  * GStreamer 1.24 on object detections of #GstAnalyticsRelationMeta, whose label is person, pedestrian, human, people, body,
  * man, woman or child, in any case. They are looks at the frame that they are on. The detector may look at few of the frames:
- * what its looks do not show any more ends, counted by the second shortest of its last four intervals. A confidence is that of a network,
- * .55 begins a track; a box without one (the number `confidence` of a param `detection`) is sure. Other labels are ignored, and
- * an info message names one where none of a person comes. Other caps, a flush, and 30 s without any box, and motion alone counts.
- * The boxes stay on the frame as they are. They do not count where `personverify` looks, in front or behind.
+ * what its looks do not show any more ends, counted by the second shortest of its last four intervals. A confidence is that
+ * of a network, .55 begins a track; a box without one (the number `confidence` of a param `detection`) is sure. Other labels
+ * are ignored, and an info message names one where none of a person comes. Other caps, a flush, and 30 s without any box,
+ * and motion alone counts. The boxes stay on the frame as they are. They do not count where `personverify` looks, in front
+ * or behind.
  *
  * Posts `cerberus-motion` element messages: `state=started` with the objects when the first appears, `state=ended` when
  * none was there for `hold-time`, at the end of the stream and when the element stops, with the objects of the last

@@ -220,24 +220,9 @@ void publish_changes(CerberusPirFusion* self) {
   });
 }
 
-// Whether a sensor sees a part of what the camera sees. Radians; of an unknown pan the head looks ahead, an unknown lens sees all.
-bool covers_view(double bearing, double field, double pan, double lens) {
-  if (!(lens > 0)) return true;
-  return std::abs(sensing::wrap(bearing - (std::isfinite(pan) ? pan : 0))) < (field + lens) / 2;
-}
-
 // Somebody whom a sensor has begun to detect may be in the picture: a person detector upstream looks at once.
-void tell_of_onsets(CerberusPirFusion* self, const fusion::Decisions::Outcome& outcome,
-                    const Settings& settings) {
-  const SensorSnapshot& moment = outcome.snapshot;
-  const double lens = moment.lens > 0 ? moment.lens : sensing::radians(settings.horizontal_fov);
-  const double pan = sensing::radians(moment.pan_degrees);
-  for (std::size_t i = 0; i < moment.count; ++i)
-    if ((outcome.decision.begun >> i & 1) != 0 &&
-        covers_view(moment.bearings[i], moment.fields_of_view[i], pan, lens)) {
-      gst_pad_push_event(self->priv->sink, new_onset_event());
-      return;
-    }
+void tell_of_onset(CerberusPirFusion* self, const fusion::Decisions::Outcome& outcome) {
+  if (outcome.decision.onset_in_view) gst_pad_push_event(self->priv->sink, new_onset_event());
 }
 
 // A sensor has spoken, in its source's thread. What follows from that goes to the head past all queues: a camera of 10
@@ -246,14 +231,13 @@ void decide_between_frames(CerberusPirFusion* self) {
   const auto now = clock_now(self);
   if (!now) return;
   Private& priv = *self->priv;
-  const Settings settings = priv.settings.snapshot();
-  const std::string& head = settings.head;
+  const std::string head = priv.settings.snapshot().head;
   const auto outcome =
       priv.decisions.between(*now, [&](Time sensor_time, Time frame_time, SensorSnapshot& snapshot) {
         priv.inputs.listen(sensor_time, frame_time, head, snapshot);
       });
   if (!outcome) return;
-  tell_of_onsets(self, *outcome, settings);
+  tell_of_onset(self, *outcome);
   CerberusFusion fusion = as_fusion(*outcome);
   cerberus_fusion_set_head(&fusion, head.c_str());
   gst_pad_push_event(priv.src, cerberus_event_new_fusion(&fusion));
@@ -341,7 +325,7 @@ GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
           return priv.inputs.at(state.time, until, settings.head, by_event, buffer.get());
         });
     const CerberusFusion fusion = as_fusion(outcome);
-    tell_of_onsets(self, outcome, settings);
+    tell_of_onset(self, outcome);
     pass_base_on(self, state.time, outcome.snapshot);
     warn_of_misfits(self, settings, outcome.snapshot);
     buffer.reset(gst_buffer_make_writable(buffer.release()));

@@ -21,7 +21,7 @@ constexpr int kWidth = 195, kHeight = 72, kStride = kWidth + 5;
 constexpr std::uint32_t kBeyond = 0x01020304u;
 
 FloorPlan plan() {
-  return {{{0, 0, 6, 4}, {6.2, 0, 12.2, 4}, {6, 1.5, 6.2, 2.5}}, {{4, .2, 5, 1.2}}, {{2, 3.4, .3}}};
+  return {{{0, 0, 6, 4}, {6.2, 0, 12.2, 4}, {6, 1.5, 6.2, 2.5}}, {{4, .2, 5, 1.2}}, {{2, 3.4, .3}}, {}};
 }
 
 struct Drawn {

@@ -78,6 +78,33 @@ START_TEST(invalid_readings_do_not_count_but_are_reported) {
 }
 END_TEST
 
+// The sensors look ahead, left and right, 120 degrees each; the lens sees 60 degrees.
+START_TEST(an_onset_is_in_view_where_its_sensor_covers_a_part_of_the_picture) {
+  const struct {
+    std::vector<std::uint8_t> sensors;
+    double pan, zoom;  // degrees; 0: no zoom
+    bool seen;
+  } cases[] = {{{1, 0, 0}, 0, 0, true},         {{0, 1, 0}, 0, 0, false},   {{0, 1, 0}, -31, 0, true},
+               {{0, 0, 1}, -31, 0, false},      {{0, 1, 1}, 31, 0, true},   {{1, 0, 0}, 91, 0, false},
+               {{1, 0, 0}, 91, 70, true},       {{1, 0, 0}, 89, 50, false}, {{1, 0, 0}, kUnknown, 0, true},
+               {{0, 1, 0}, kUnknown, 0, false}, {{2, 0, 0}, 0, 0, false},   {{0, 0, 0}, 0, 0, false}};
+  for (const auto& each : cases) {
+    Stream stream;
+    stream.frame();
+    stream.sensors = each.sensors, stream.pan = each.pan, stream.lens = each.zoom;
+    const bool seen = stream.frame().onset_in_view;
+    ck_assert_msg(seen == each.seen, "case %d", static_cast<int>(&each - cases));
+    ck_assert(!stream.frame().onset_in_view);  // it goes on
+  }
+  FuserOptions unknown;
+  unknown.lens = 0;
+  Stream stream(unknown);
+  stream.frame();
+  stream.sensors = {0, 1, 0};
+  ck_assert(stream.frame().onset_in_view);
+}
+END_TEST
+
 START_TEST(what_a_turning_base_trips_is_doubtful_and_does_not_count) {
   Stream stream;
   stream.yaw_rate = 5.1;
@@ -427,15 +454,24 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "fuser", {nothing_anywhere_means_zero, the_return_delay_counts_from_the_first_frame_and_from_a_reset,
-                the_head_returns_five_seconds_after_the_last_detection, limits_without_zero_are_reported,
+      "fuser", {nothing_anywhere_means_zero,
+                the_return_delay_counts_from_the_first_frame_and_from_a_reset,
+                the_head_returns_five_seconds_after_the_last_detection,
+                limits_without_zero_are_reported,
                 invalid_readings_do_not_count_but_are_reported,
+                an_onset_is_in_view_where_its_sensor_covers_a_part_of_the_picture,
                 what_a_turning_base_trips_is_doubtful_and_does_not_count,
-                a_straight_way_makes_doubt_sensor_by_sensor, a_doubtful_sensor_that_rests_is_believed_again,
-                sensors_and_base_have_a_time_of_their_own, the_paper_holds_where_it_has_no_track,
-                the_paper_ignores_a_fourth_sensor, a_table_turns_no_further_than_the_stop,
-                a_tables_hold_and_zero_are_immediate, a_users_table_has_hysteresis_return_delay_and_searches,
-                an_unknown_pan_angle_commands_no_turn, time_that_goes_back_starts_anew,
-                a_long_gap_lets_every_timer_expire, options_that_make_no_sense_are_put_right,
+                a_straight_way_makes_doubt_sensor_by_sensor,
+                a_doubtful_sensor_that_rests_is_believed_again,
+                sensors_and_base_have_a_time_of_their_own,
+                the_paper_holds_where_it_has_no_track,
+                the_paper_ignores_a_fourth_sensor,
+                a_table_turns_no_further_than_the_stop,
+                a_tables_hold_and_zero_are_immediate,
+                a_users_table_has_hysteresis_return_delay_and_searches,
+                an_unknown_pan_angle_commands_no_turn,
+                time_that_goes_back_starts_anew,
+                a_long_gap_lets_every_timer_expire,
+                options_that_make_no_sense_are_put_right,
                 whatever_comes_in_the_answer_is_sound_repeatable_and_free_of_allocations});
 }
